@@ -91,14 +91,12 @@ void add_exact_walls(std::vector<PlanItem>& items) {
 
 void price_effects(Plan& plan) {
   const Scene& scene = plan.scene;
-  Outlook outlook{
-      .task = fill_task_of(plan),
-      .spheres = plan.expected_count,
-      .aim = plan.expected_packing_fraction,
-      .gain = gain_of_stages(scene, *plan.radii),
-      .spread = spread_of(plan),
-      .width = bounds_of<dynamic>(plan.domain).size().minCoeff() / (2 * plan.radii->quantile(1 - 1e-4)),
-      .is_filled = scene.target.fill || is_guess(plan)};
+  Outlook outlook{.task = fill_task_of(plan),
+                  .spheres = plan.expected_count,
+                  .aim = plan.expected_packing_fraction,
+                  .gain = gain_of_stages(scene, *plan.radii),
+                  .spread = spread_of(plan),
+                  .is_filled = scene.target.fill || is_guess(plan)};
   outlook.size = bounds_of<dynamic>(plan.domain).size() / (2 * plan.radii->moment(1));
   // Those of the start have places, and fill their share.
   const auto there = static_cast<double>(plan.start.spheres.size());

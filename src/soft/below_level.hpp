@@ -7,51 +7,51 @@
 
 namespace bernal {
 
-/// The shape of a bed's surface: a level, or a heap, a pyramid of many flanks around a line along gravity
-/// through the middle of the container.
+/// The shape of a bed's surface: a level, or a heap. A heap is a pyramid with many flanks; its axis goes
+/// along gravity through the middle of the container.
 class BedTop {
  public:
   /// `down` is a unit vector.
   BedTop(const BedTarget&, const Container&, const Vector<3>& down);
 
-  /// How high, against gravity, the surface through p is: of a heap its tip.
+  /// The height, against gravity, of the surface through p: that of its tip, if it is a heap.
   double height(const Vector<3>& p) const;
-  /// The planes that a bed lies in front of whose surface is so high: the level, of a heap at its tip, and
-  /// the flanks.
+  /// The planes of the surface with this height: the level, or the flanks of a heap and the level at its tip.
+  /// The bed is in front of them.
   std::vector<Facet> planes(double height) const;
   const Vector<3>& up() const { return up_; }
   bool is_level() const { return normals_.empty(); }
 
  private:
   Vector<3> up_, middle_ = Vector<3>::Zero();
-  double cosine_ = 1;               // of the flanks' angle
-  std::vector<Vector<3>> normals_;  // of the flanks, unit, out of the bed
+  double cosine_ = 1;               // of the angle of the flanks
+  std::vector<Vector<3>> normals_;  // unit normals of the flanks, out of the bed
 };
 
-/// The part of a container in front of planes. `volume` is its own. The planes are decided in doubles; all
-/// questions else are passed on.
+/// The part of a container in front of planes; `volume` is that of the part. The planes are decided in
+/// doubles; the container answers for its own walls.
 std::shared_ptr<const Container> cut_by_planes(std::shared_ptr<const Container>, std::vector<Facet> planes,
                                                double volume);
 
-/// 32,768 evenly distributed points inside; fewer of a container that is hardly more than nothing. Cost: a
-/// question to the walls a point.
+/// 32,768 evenly distributed points inside a container; fewer if it fills hardly any of its bounds. Cost: a
+/// question to the walls for each point.
 std::vector<Vector<3>> even_points_inside(const Container&);
 
-/// How much of a container lies below a surface: by evenly distributed points inside. Error: some
-/// thousandths. Cost: that of these points, once.
+/// The volume of a container below a surface, from evenly distributed points inside. Error: some thousandths.
+/// Cost: that of `even_points_inside`, once.
 class Heights {
  public:
   /// `ground`: height of the lowest point of the domain.
   Heights(const Container&, const BedTop&, double ground);
 
-  /// Of the lowest point of the container.
+  /// The height of the lowest point.
   double ground() const { return ground_; }
-  /// Of the surface of that height; at most the container's.
+  /// The volume below the surface with this height.
   double volume_below(double height) const;
-  /// Of the surface below which the container holds that volume. Precondition: volume > 0.
+  /// The height of the surface below which the container has this volume. Precondition: volume > 0.
   double holding(double volume) const;
-  /// Of the part below the surface whose points have that mean height: of a bed that is as dense everywhere,
-  /// and whose spheres have that mean, weighted by their volumes.
+  /// The volume below the surface under which points have this mean height. If a bed is equally dense
+  /// everywhere, and this is the mean height of its spheres weighted by volume, it is the volume of the bed.
   double volume_below_mean(double height) const;
 
  private:

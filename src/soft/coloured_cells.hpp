@@ -4,9 +4,9 @@
 
 #include "soft/soft_kernels.hpp"
 
-// What a processor of very many threads does to the spheres of relaxation, one thread a cell or a sphere. The
-// same operations on the same numbers in the same order wherever it is compiled, one correctly rounded
-// operation at a time: the same bits.
+// The loops of `ColouredSpheres`, for a processor with very many threads, with one or some threads for a cell
+// or a sphere. Compiled anywhere, they do the same correctly rounded operations on the same numbers in the
+// same order, so that the results are the same bits.
 #if defined(__CUDACC__)
 #define BERNAL_EVERYWHERE __host__ __device__
 #else
@@ -15,9 +15,9 @@
 
 namespace bernal {
 
-/// The cells of a periodic box, no narrower than neighbours may be apart, an even number along each axis. The
-/// first axis is the fastest. Cells of one colour, every second one along each axis, have no neighbours in
-/// each other. Plain numbers and arithmetic, since they are used on GPUs, too.
+/// The cells of a periodic box, an even number along each axis, the first axis the fastest. A cell is at
+/// least as wide as neighbours may be apart, so that spheres in different cells of one colour, every second
+/// one along each axis, are not neighbours. Plain numbers and arithmetic, for use on GPUs.
 struct ColouredCells {
   std::uint32_t across[3];
 
@@ -30,14 +30,14 @@ struct ColouredCells {
   BERNAL_EVERYWHERE std::uint32_t at(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
     return (z * across[1] + y) * across[0] + x;
   }
-  /// That a sphere is in.
+  /// The cell that a sphere is in.
   BERNAL_EVERYWHERE std::uint32_t of(const SoftSphere& s) const {
     return at(along(s, 0), along(s, 1), along(s, 2));
   }
   BERNAL_EVERYWHERE std::uint32_t of_a_colour_in_two_layers() const {
     return across[0] / 2 * (across[1] / 2);
   }
-  /// Number n of a colour in the pairs of layers from the first on.
+  /// Cell number n of a colour, counted from a pair of layers on.
   BERNAL_EVERYWHERE std::uint32_t of_colour(std::uint32_t colour, std::uint32_t first_pair,
                                             std::uint32_t n) const {
     const std::uint32_t row = across[0] / 2, x = n % row, y = n / row % (across[1] / 2);
@@ -46,7 +46,7 @@ struct ColouredCells {
   }
 };
 
-/// From one place to another, as `SoftKernels` take it.
+/// The way from one sphere to the nearest image of another along an axis, rounded as in `SoftKernels`.
 BERNAL_EVERYWHERE inline float way(const SoftSphere& from, const SoftSphere& to, int k, const float* scale) {
   const std::uint32_t steps = static_cast<std::uint32_t>(to.x[k]) - static_cast<std::uint32_t>(from.x[k]);
   return static_cast<float>(static_cast<std::int32_t>(steps)) * scale[k];
@@ -57,10 +57,10 @@ BERNAL_EVERYWHERE inline float squared_distance(const SoftSphere& a, const SoftS
   return (dx * dx + dy * dy) + dz * dz;
 }
 
-/// A number that is not negative becomes the largest of itself and this; of many threads.
+/// Raises *most to `value` if that is larger. Both are at least 0. Many threads may call it.
 BERNAL_EVERYWHERE inline void raise_to(float* most, float value) {
 #if defined(__CUDA_ARCH__)
-  // Of numbers that are not negative the bits are in their order.
+  // The bits of numbers that are not negative are in the order of the numbers.
   if (value > *static_cast<volatile float*>(most))
     atomicMax(reinterpret_cast<int*>(most), __float_as_int(value));
 #else
@@ -68,7 +68,7 @@ BERNAL_EVERYWHERE inline void raise_to(float* most, float value) {
 #endif
 }
 
-/// The cell of each sphere, and its number.
+/// Writes the cell of each sphere and its number.
 struct FindCells {
   const SoftSphere* spheres;
   ColouredCells cells;
@@ -79,8 +79,8 @@ struct FindCells {
   }
 };
 
-/// Spheres in the order of their cells, and where each cell begins: `start` has one entry more than there are
-/// cells.
+/// Puts spheres into the order of their cells, and writes where each cell begins. `start` has one entry more
+/// than there are cells.
 struct TakeOrder {
   const SoftSphere* by_number;
   const std::uint32_t *cell_of, *number_of;  // in that order
@@ -96,7 +96,7 @@ struct TakeOrder {
   }
 };
 
-/// In the order of numbers again.
+/// Puts spheres back into the order of their numbers.
 struct GiveBack {
   const SoftSphere* in_order;
   const std::uint32_t* number_of;
@@ -104,7 +104,7 @@ struct GiveBack {
   BERNAL_EVERYWHERE void operator()(std::uint32_t p) const { by_number[number_of[p]] = in_order[p]; }
 };
 
-/// And back.
+/// Puts spheres into the order of the cells again.
 struct TakeAgain {
   const SoftSphere* by_number;
   const std::uint32_t* number_of;
@@ -112,16 +112,16 @@ struct TakeAgain {
   BERNAL_EVERYWHERE void operator()(std::uint32_t p) const { spheres[p] = by_number[number_of[p]]; }
 };
 
-/// So many neighbours are a unit of lists: they are read together.
+/// The number of neighbours that are read together, a unit of a list.
 inline constexpr std::uint32_t neighbors_a_unit = 4;
 
 struct alignas(4 * neighbors_a_unit) NeighborUnit {
   std::uint32_t places[neighbors_a_unit];
 };
 
-/// The neighbours of sphere p, each found in the cells around its own. How many units they take is counted
-/// before, where `units` is null; then they are written from `first_unit` of p on, and filled up with the
-/// place behind the last sphere, where there is none.
+/// Finds the neighbours of sphere p in the cells around its own. If `units` is null it only counts the units
+/// that they take. Else it writes them from unit `first_unit[p]` on, and fills the last unit up with the
+/// place behind the last sphere, where no sphere is.
 struct FindNeighbors {
   const SoftSphere* spheres;
   ColouredCells cells;
@@ -129,7 +129,7 @@ struct FindNeighbors {
   float scale[3];
   float twice_the_skin;
   std::uint32_t count;
-  std::uint32_t* first_unit;  // of p: where they are counted, how many
+  std::uint32_t* first_unit;  // of p; while they are counted, the number of units of p
   NeighborUnit* units;
 
   BERNAL_EVERYWHERE void operator()(std::uint32_t p) const {
@@ -166,7 +166,7 @@ struct FindNeighbors {
   }
 };
 
-/// What neighbours do to a sphere.
+/// The sums over the neighbours of a sphere.
 struct Pushes {
   float x = 0, y = 0, z = 0, contacts = 0;
   float largest = 0;  ///< overlap ratio
@@ -177,8 +177,8 @@ struct Pushes {
   }
 };
 
-/// Moves the spheres of a cell one after the other, see `SoftKernels::Sweep`. Some threads share the
-/// neighbours of a sphere: thread n works for cell n / threads. Their sums are added in pairs.
+/// Moves the spheres of a cell one after the other, as `SoftKernels::Sweep` does. Thread n works for cell
+/// n / threads: `threads` threads share the neighbours of a sphere, and their sums are added in pairs.
 template <bool measure>
 struct SweepColour {
   static constexpr std::uint32_t threads = 4;
@@ -270,7 +270,7 @@ struct SweepColour {
   }
 };
 
-/// The squares of how far spheres have moved, the largest of each part.
+/// Finds the largest squared move in each part of the spheres.
 struct FindMoves {
   const SoftSphere *spheres, *built_at;
   float scale[3];

@@ -10,16 +10,17 @@ namespace bernal {
 
 /// Spheres that are swept cell by cell, all cells of a colour at the same time.
 ///
-/// A `Device` has a name() and memory, Array<T>, with size(), data() and resize_anew(n), which loses what was
-/// there; to(array, values) and from(array, count), which copy; set(array, k, value) and at(array, k);
-/// fill_zero(array, n); each(n, function), which calls it for 0 to n - 1 at the same time; sort(keys, values,
-/// n, bits), stable, by the lowest bits of the keys; sums_before(array, n), of each entry the sum of those
-/// before it, and of entry n that of all; wait(). One call follows the other.
+/// A `Device` has a name() and memory, Array<T>, with size(), data() and resize_anew(n), which loses the
+/// content. to(array, values) and from(array, count) copy; set(array, k, value) and at(array, k) access one
+/// entry; fill_zero(array, n) clears. each(n, function) calls the function for 0 to n - 1 at the same time.
+/// sort(keys, values, n, bits) is stable and uses the lowest bits of the keys. sums_before(array, n) replaces
+/// each entry by the sum of those before it, entry n by that of all. wait() returns when all is done. Calls
+/// follow each other.
 ///
-/// Where there are more spheres than `window`, pairs of layers with about so many are swept one after the
-/// other, all colours of each: so a cache of some tens of megabytes reads them from memory once a sweep, and
-/// not once a colour. Bytes a sphere and sweep then: 32 for its place, read and written, 16 a unit of its
-/// list, and 5 for where its cell and its list begin.
+/// With more spheres than `window`, slabs of pairs of layers, each with about `window` spheres, are swept one
+/// after the other in all colours. So a cache of some tens of megabytes reads the spheres from memory once a
+/// sweep, and not once a colour. Bytes a sphere and sweep are then 32 to read and write its place, 16 a unit
+/// of its list, and 5 for the beginnings of its cell and its list.
 template <class Device>
 class ColouredSpheres final : public DeviceSpheres {
  public:

@@ -10,31 +10,33 @@
 namespace bernal {
 namespace {
 
-/// Of the margin, what single precision leaves to rely on.
+/// The largest overlap ratio of free spheres, over the margin: below 1 for the errors of single precision.
 constexpr double share_of_margin = 0.97;
-/// Of the lists while spheres overlap by this and more, in a container: as the walls know by themselves who
-/// has come near, a neighbour that is missed is one that overlaps for so much longer. N = 300,000 in a CAD
-/// part, by how far most spheres have moved: 28 lists in place of 41, and of 107 in another.
+/// From the overlap ratio `crowded` on, lists in a container are worn by `wear_of_crowd`. The walls find near
+/// spheres without these lists, and a pair that they miss only overlaps for some sweeps more. N = 300,000 in
+/// two CAD parts: 28 lists in place of 41, and of 107.
 constexpr double crowded = 0.06, wear_of_crowd = 3;
-/// After so many sweeps it is looked at how far things are.
+/// Sweeps from one look at the overlaps to the next.
 constexpr int sweeps_a_look = 25;
-/// Stuck: at so many looks in a row the mean squeeze is more than this share of the least so far.
+/// Spheres are stuck if, at so many looks in a row, the mean squeeze is more than this share of its least
+/// value.
 constexpr double hardly_freer = 0.85;
 constexpr int most_slow_looks = 2;
-/// Stirring helps as long as the mean squeeze falls below this share of the least so far.
+/// Stirring helps as long as the mean squeeze falls below this share of its least value.
 constexpr double progress = 0.9;
-/// Mean squeeze at which there are so many spheres too many that stirring is of no use.
+/// From this mean squeeze on there are far too many spheres, and stirring is of no use.
 constexpr double hopeless = 0.02;
-/// The share of the spheres that is put elsewhere at a time; in a container in mean squeezes, and at most;
-/// and there those alone whose sum is not less than so much of the largest: of very many spheres hardly any
-/// are stuck in the end, and whoever is put elsewhere needlessly is stuck there.
+/// The share of the spheres that is put into holes at a time. In a container it is `relocated_by_squeeze`
+/// times the mean squeeze, at most `most_relocated`, and only spheres whose squeeze is at least
+/// `squeezed_as_well` of the largest: in the end hardly any of very many spheres are stuck, and one that
+/// moves needlessly is stuck in its hole.
 constexpr double relocated = 0.002;
 constexpr double relocated_by_squeeze = 1, most_relocated = 0.03;
 constexpr float squeezed_as_well = 0.05f;
-/// Largest overlap ratio, in mean squeezes, above which it is only a few spheres that are stuck.
+/// Only a few spheres are stuck if the largest overlap ratio is more than this many mean squeezes.
 constexpr double local_jam = 40;
 constexpr int burst_sweeps = 50;
-/// Sum of squared overlap ratios of a sphere that will not find its way by itself.
+/// Sum of squared overlap ratios from which on a sphere needs a hole.
 constexpr float severe_squeeze = 0.05f;
 
 }  // namespace
@@ -53,7 +55,7 @@ void Crowd<Ground>::measure() {
     ++sweeps_;
   };
   const bool worn = Ground::crowds_wear_lists && largest_overlap_ >= crowded;
-  if (worn) look();  // which on worn lists tells no more than that they are crowded still
+  if (worn) look();  // on worn lists this only says whether they are still crowded
   if (!worn || largest_overlap_ < crowded) {
     ground_.engine().wear_lists(pace.wear);
     look();
@@ -106,7 +108,7 @@ StageEnd Crowd<Ground>::settle(Settling& so_far, const std::function<bool()>& st
       end = StageEnd::hit_limit;
     if (end != StageEnd::full) break;
     slow = mean_squeeze_ > hardly_freer * least_squeeze ? slow + 1 : 0;
-    // May swing: only a new low counts, so that this ends.
+    // The squeeze may oscillate: only a new least value counts, so that this ends.
     least_squeeze = std::min(least_squeeze, mean_squeeze_);
   }
   ground_.read_places(spheres_);
@@ -142,7 +144,7 @@ StageEnd Crowd<Ground>::relax(const Stirring& how, const Monitor& monitor, Rando
     } else if (++failures > (mean_squeeze_ > hopeless ? how.hopeless_patience : how.patience)) {
       return StageEnd::full;
     }
-    // Bursts do most; what they do not help to is where there is no room, or in the wrong chamber.
+    // Bursts do most. Spheres that they do not help have no room, or are in the wrong chamber.
     const bool local = severe_ > 0 || largest_overlap_ > local_jam * mean_squeeze_;
     if (failures % how.failures_a_burst == 0 && !local)
       burst();
@@ -162,7 +164,7 @@ void Crowd<Ground>::burst() {
   ground_.swell(1);
 }
 
-/// The largest first, of equal ones the first.
+/// In descending order of squeeze; equal ones in the order of their numbers.
 template <class Ground>
 std::vector<std::uint32_t> Crowd<Ground>::most_squeezed(std::size_t count) const {
   std::vector<std::uint32_t> ids(squeeze_.size());

@@ -12,13 +12,13 @@
 
 namespace bernal {
 
-/// The relaxation of `SoftPacking` on another processor: in a periodic box of three dimensions, in single
-/// precision and fixed point, the same steps in another order of the spheres. So it makes another packing of
-/// the same kind; the same one on every device. What the calls do stands there.
+/// The relaxation of `SoftPacking` on another processor, in a periodic box of three dimensions: the same
+/// steps in another order of the spheres. So it makes another packing of the same kind; every device makes
+/// the same packing. `SoftPacking` says what the calls do.
 class DevicePacking {
  public:
-  /// Centres in [0, edge). Throws Error{bad_scene} where the box is narrower than `fewest_cells` of the
-  /// cells that the spheres need: some 12 radii of equal ones.
+  /// Centres in [0, edge). Throws Error{bad_scene} if the box is narrower than `fewest_cells` cells, some 12
+  /// radii of equal spheres.
   DevicePacking(const Spheres<3>& spheres, const Vector<3>& edges, std::unique_ptr<DeviceSpheres> device);
 
   void wear_lists(double wear) { life_.wear(wear); }
@@ -29,11 +29,11 @@ class DevicePacking {
   const Effect& lists_built() const { return lists_built_; }
   std::string device_name() const { return device_->name(); }
 
-  /// Whatever they are worth: `sweep` does it by itself.
+  /// Builds the lists even if they are still valid. `sweep` builds them when necessary.
   void build_lists();
-  /// Returns when all sweeps are done: `sweep` only asks for them.
+  /// Returns when all sweeps are done; `sweep` only starts them.
   void wait() const { device_->wait(); }
-  /// Of a sphere, see `ColouredSpheres`.
+  /// Bytes a sphere, see `ColouredSpheres`.
   double bytes_a_sweep() const { return device_->bytes_a_sweep(); }
 
   void archive(Archive& a);

@@ -9,46 +9,47 @@
 
 namespace bernal {
 
-/// Overlapping spheres on another processor than this, in its own memory, and their sweeps: what
-/// `DevicePacking` asks for. Three dimensions, a periodic box. All that is asked for is a function of the
-/// spheres alone.
+/// Overlapping spheres in the memory of another processor, and their sweeps, for `DevicePacking`: in three
+/// dimensions and a periodic box. All results depend on the spheres only.
 class DeviceSpheres {
  public:
   virtual ~DeviceSpheres() = default;
 
   /// "NVIDIA H100 80GB HBM3"
   virtual std::string name() const = 0;
-  /// In the order of their numbers.
+  /// Spheres are in the order of their numbers in all calls.
   virtual void put(const std::vector<SoftSphere>& spheres) = 0;
   virtual std::vector<SoftSphere> get() const = 0;
-  /// Where they were when lists were built.
+  /// The spheres as they were when the lists were built.
   virtual std::vector<SoftSphere> built_at() const = 0;
 
-  /// Sorts them into cells and finds their neighbours: those with gaps below twice the skin. Preconditions:
-  /// that of `fewest_cells`; no radius is above `largest`.
+  /// Sorts the spheres into cells and finds their neighbours: those across gaps below twice the skin.
+  /// Preconditions: the box has `fewest_cells`; no radius is above `largest`.
   virtual void build(const std::array<double, 3>& edges, float largest, float skin) = 0;
-  /// Takes those places instead of the present ones, builds lists of them, and then the present ones again.
+  /// Builds the lists of the spheres `then`; the present ones stay.
   virtual void build_of(const std::vector<SoftSphere>& then, const std::array<double, 3>& edges,
                         float largest, float skin) = 0;
-  /// Each sphere once, as `SoftKernels::Sweep` says, in another order.
+  /// Moves each sphere once, as `SoftKernels::Sweep` does, in another order.
   virtual void sweep(const std::array<float, 3>& scale, float omega) = 0;
-  /// The same; the largest overlap ratio that was met.
+  /// The same; returns the largest overlap ratio that it met.
   virtual float sweep_to_overlap(const std::array<float, 3>& scale, float omega) = 0;
-  /// The squares of the farthest moves since lists were built, of each `part` spheres that follow each
-  /// other in some order.
+  /// The squares of the farthest moves since the lists were built, one for each `part` spheres.
   virtual std::vector<float> squares_moved(const std::array<float, 3>& scale, std::uint32_t part) const = 0;
-  /// What a sweep has to read from memory and to write to it at least, for a sphere, by the lists at hand.
+  /// The least number of bytes a sphere that a sweep with the present lists reads from memory and writes to
+  /// it.
   virtual double bytes_a_sweep() const = 0;
-  /// Returns when all that was asked for is done.
+  /// Returns when all calls are done.
   virtual void wait() const = 0;
 
-  /// Cells along an axis, each as wide as neighbours may be apart, below which cells meet their own images.
+  /// The least number of cells along an axis, each as wide as neighbours may be apart. With fewer, cells meet
+  /// their own images.
   static constexpr int fewest_cells = 4;
 };
 
-/// Throws Error{bad_scene} where `spheres_on_gpu` would.
+/// Throws Error{bad_scene} if `spheres_on_gpu` would.
 void require_gpu();
-/// On the first NVIDIA GPU. Throws Error{bad_scene} where bernal was built without CUDA, or none is there.
+/// Spheres on the first NVIDIA GPU. Throws Error{bad_scene} if bernal was built without CUDA, or none is
+/// there.
 std::unique_ptr<DeviceSpheres> spheres_on_gpu();
 
 }  // namespace bernal

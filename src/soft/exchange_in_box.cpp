@@ -23,7 +23,7 @@ std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, boo
   if (D == 1 || !sizes.is_of_use()) return std::nullopt;
   const double least_edge =
       std::max(edges.minCoeff() / most_shrinking, 2 * most_shrinking * std::ranges::max(spheres.r));
-  SoftEngine<D> engine(spheres, edges, most_shrinking, work.walls, 1, wide);
+  SoftEngine<D> engine(spheres, edges, work.walls, 1, wide);
   double edge = edges.minCoeff(), overlap = 0;
   const float omega = pace_for(0).omega * D / 3;
   const auto compress = [&](double factor) {

@@ -3,28 +3,28 @@
 
 namespace bernal {
 
-/// When filling a box that does not take all spheres comes to its end.
+/// Limits of filling a box that does not take all spheres.
 struct FillOptions {
-  /// Limit on the sweeps over all spheres.
+  /// The most sweeps over all spheres.
   double sweeps = 20000;
 };
 
-/// Whether every sphere alone finds room in the box that the spheres are to end in: none overlaps its own
-/// image by more than is allowed. Precondition: `work.target_edges` is set.
+/// Whether each sphere by itself fits into the box `*work.target_edges`: none overlaps its own image by more
+/// than is allowed. Precondition: `work.target_edges` is set.
 bool fits_box(const Work& work);
 
-/// Puts all spheres, whose radii are prescribed, into the box `*work.target_edges`, which is so too, in 1 to
-/// 8 dimensions, by pushing apart what overlaps. They start where they are, relative to the box, or at random
-/// where they have no places yet; in one dimension one after the other. Where nothing overlaps they stay.
+/// Puts all spheres, with the radii that they have, into the box `*work.target_edges`, in 1 to 8 dimensions,
+/// by pushing overlapping spheres apart. They start where they are, relative to the box; without places they
+/// start at random, in one dimension in line. If nothing overlaps, they stay.
 ///
-/// On `converged` all are there and no two images overlap by more than `work.allowed_overlap`, whatever the
-/// rounding. Otherwise, `full` where stirring does not help any more and `hit_limit` or `cancelled` where it
-/// was cut short, `work.spheres` holds those that are free of overlap, in the order that they had. The last
-/// ones are left out, about as many as it takes for the others to come free, which leaves the distribution of
-/// sizes as it is; and of what overlaps nevertheless, where it was cut short, again and again the sphere that
-/// overlaps most others. Radii never change by a bit. Deterministic in the seed.
+/// If it has `converged`, all spheres are there and no two images overlap by more than
+/// `work.allowed_overlap`, proven in double precision. If it is `full`, because stirring no longer helps, or
+/// `hit_limit` or `cancelled`, `work.spheres` holds the spheres that are free of overlap, in the order that
+/// they had. The last spheres are left out, about as many as it takes for the others to come free, so that
+/// the distribution of sizes stays. Where overlaps are left nevertheless, the sphere that overlaps most
+/// others goes, again and again. Radii do not change. Deterministic in the seed.
 ///
-/// Precondition: `work.target_edges` is set. Throws Error{bad_scene} where a sphere overlaps its own image.
+/// Precondition: `work.target_edges` is set. Throws Error{bad_scene} if a sphere overlaps its own image.
 /// Cost: some hundred sweeps of 11 to 130 ns a sphere, some thousand near random close packing; 2,000 equal
 /// spheres to 0.62 in three dimensions 0.02 s, to 0.435 in four 0.1 s, to 0.065 in eight 0.3 s.
 StageEnd fill_by_relaxation(Work& work, const FillOptions& options);

@@ -13,15 +13,14 @@
 namespace bernal {
 namespace {
 
-/// Of margins.
 constexpr double largest_margin = 0.01;
-/// Of the margin, by which walls press less on spheres that are snug between them.
+/// The share of the margin by which walls push less, if spheres are snug between them.
 constexpr double relief_where_snug = 0.95;
-/// Random places that are looked at to find holes: so many for each sphere that there is, or for each hole
-/// where that is less, and a few more.
+/// The number of random places that are tried to find holes: for each sphere or for each hole, whichever is
+/// less in total, and the least number.
 constexpr double probes_a_sphere = 2, probes_a_hole = 1000, least_probes = 1000;
 
-/// A hundred times the resolution of the coordinates at least, that in smallest radii.
+/// At least a hundred times the resolution, which is in smallest radii.
 double margin_for(double resolution) { return std::max(1e-4, 100 * resolution); }
 
 }  // namespace
@@ -83,7 +82,7 @@ void BoxGround<D>::place(const Spheres<D>& spheres) {
   for (double& r : shrunk.r) r *= 1 - allowed_;
   Vector<D> edges = edges_;
   resize_box<D>(shrunk, edges, edges_ / (1 + margin_));
-  engine_.emplace(shrunk, edges, burst_swelling, walls_, 1 / (1 - allowed_));
+  engine_.emplace(shrunk, edges, walls_, 1 / (1 - allowed_));
 }
 
 template <int D>

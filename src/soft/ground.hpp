@@ -13,24 +13,24 @@
 
 namespace bernal {
 
-/// Throws Error{bad_scene} where single precision cannot tell spheres apart in a container: where a unit of
-/// its coordinates, 2^-32 of the longest edge, is more than 1e-4 of the smallest radius: that ratio it is
-/// given.
+/// `resolution` is a unit of the coordinates, 2^-32 of the longest edge, in smallest radii. Throws
+/// Error{bad_scene} if it is more than 1e-4: then single precision cannot tell the spheres apart.
 void require_resolution(double resolution);
 
-/// What a `Crowd` stands on in a container: its walls push, and holes have to clear them.
+/// The ground of a `Crowd` in a container: its walls push, and spheres in holes do not overlap them.
 class ContainerGround {
  public:
   static constexpr int dimension = 3;
-  /// Of the radii, in a burst.
+  /// The factor of the radii in a burst.
   static constexpr double burst_swelling = 1.02;
-  /// So many spheres are never moved to holes, however squeezed they are.
+  /// At least this number of spheres is not moved to holes.
   static constexpr std::size_t always_stay = 0;
-  /// Lists may be worn further while spheres are crowded, and as many are put into holes as are stuck.
+  /// Whether lists may be worn further while spheres are crowded; then as many spheres are put into holes as
+  /// are stuck.
   static constexpr bool crowds_wear_lists = true;
 
-  /// Both outlive this. Where spheres are `snug`, none having more room between the walls than it takes,
-  /// walls press a little less than spheres, so that they leave these free.
+  /// Both outlive this. `snug` says that no sphere has more room between the walls than it takes. Then walls
+  /// push a little less than spheres do, so that spheres come free of overlap.
   ContainerGround(const Container& container, const Places& places, bool snug = false)
       : container_(&container), places_(&places), snug_(snug) {}
 
@@ -40,20 +40,21 @@ class ContainerGround {
   void read_places(Spheres<3>& spheres) const { packing_->write_to(spheres); }
 
   SoftPacking& engine() { return *packing_; }
-  /// Radii become so many times those that are relaxed.
+  /// Makes the radii `factor` times those that are relaxed.
   void swell(double factor) { packing_->swell((1 + margin_) * factor); }
-  /// Share of the radii; it takes D times as much off the packing fraction.
+  /// By which share of the radii the relaxed spheres are larger than those asked for. It lowers the packing
+  /// fraction by D times as much.
   double margin() const { return margin_; }
 
-  /// Puts the spheres `ids` into the largest holes where they clear the wall, the largest first.
+  /// Puts the spheres `ids`, the largest first, into the largest holes in which they do not overlap a wall.
   void move_to_holes(Spheres<3>& spheres, std::vector<std::uint32_t> ids, Random& random);
-  /// Places for spheres of these radii, which descend; fewer if there are not so many.
+  /// Places for spheres of these descending radii; fewer if there are not enough holes.
   std::vector<Vector<3>> holes_for(std::span<const double> radii, const Spheres<3>& spheres,
                                    Random& random) const;
 
   Effect lists_built() const { return lists_built_ + packing_->lists_built(); }
 
-  /// Of as many spheres as were placed.
+  /// Writes or reads the state. Precondition: the same number of spheres was placed.
   void archive(Archive& a) { a(margin_, lists_built_, *packing_); }
 
  private:
@@ -65,21 +66,21 @@ class ContainerGround {
   Effect lists_built_;
 };
 
-/// What a `Crowd` stands on in a box of 1 to 8 dimensions that repeats itself along all axes or along those
-/// without walls. What matters is how distances compare with radii: where spheres are to be larger, the box
-/// is smaller.
+/// The ground of a `Crowd` in a box of 1 to 8 dimensions that is periodic along the axes without walls.
+/// Instead of larger radii the box is smaller.
 template <int D>
 class BoxGround {
  public:
   static constexpr int dimension = D;
-  /// Of the radii, in a burst. Where there are more dimensions to give way in, more helps faster: N = 2,000,
-  /// in five dimensions at 0.302 and six at 0.197, 0.4 s and 0.85 s instead of 0.85 s and 1.3 s.
+  /// As of `ContainerGround`. In more than four dimensions a larger factor is faster: for N = 2,000 in five
+  /// dimensions at 0.302 and in six at 0.197 it takes 0.4 s and 0.85 s instead of 0.85 s and 1.3 s.
   static constexpr double burst_swelling = D <= 4 ? 1.02 : 1.04;
   static constexpr std::size_t always_stay = 1;
   static constexpr bool crowds_wear_lists = false;
 
-  /// Every edge is at least the largest diameter less what overlap is allowed: the spheres are relaxed with
-  /// the share 1 - `allowed` of their radii. Axes with `walls` keep whole spheres between them; none: empty.
+  /// The spheres are relaxed with the share 1 - `allowed` of their radii, `allowed` being the overlap ratio
+  /// that the result may have. Axes with `walls` (empty: none) keep whole spheres between them. Precondition:
+  /// every edge is at least the largest diameter times that share.
   BoxGround(const Vector<D>& edges, double allowed, std::vector<bool> walls = {})
       : edges_(edges), allowed_(allowed), walls_(std::move(walls)) {}
 
@@ -91,12 +92,12 @@ class BoxGround {
   void swell(double factor) { engine_->grow(factor == 1 ? burst_swelling : 1 / factor); }
   double margin() const { return margin_; }
 
-  /// Puts the spheres `ids` into the largest holes, the largest first.
+  /// Puts the spheres `ids`, the largest first, into the largest holes.
   void move_to_holes(Spheres<D>& spheres, std::vector<std::uint32_t> ids, Random& random);
 
   Effect lists_built() const { return lists_built_ + engine_->lists_built(); }
 
-  /// Of as many spheres as were placed.
+  /// Writes or reads the state. Precondition: the same number of spheres was placed.
   void archive(Archive& a) { a(margin_, lists_built_, *engine_); }
 
  private:

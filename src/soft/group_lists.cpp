@@ -7,10 +7,10 @@
 namespace bernal {
 namespace {
 
-/// Cells for each sphere of a level, at most.
+/// The most cells for each sphere of a level.
 constexpr double cells_per_sphere = 2;
-/// Of a cell, in the farthest that two spheres of its level may be apart as neighbours. The cells along the
-/// first axis are looked through as one run, `lanes` spheres at a time: few runs, and not much too long.
+/// The widths of a cell, over the largest distance of neighbours of its level. A search reads the cells along
+/// the first axis as one run, `lanes` spheres at a time: so runs are few, and not much too long.
 constexpr std::array<double, 3> cell_widths = {0.5, 1, 1};
 
 std::size_t level_of(float r, const SoftSizes& sizes) {
@@ -21,7 +21,7 @@ std::size_t level_of(float r, const SoftSizes& sizes) {
 
 }  // namespace
 
-/// Returns how many cells they have.
+/// Returns the number of cells of all levels.
 std::size_t RegionCells::choose_levels(std::span<const SoftSphere> spheres, const SoftSizes& sizes) {
   levels_.assign(sizes.levels, SoftLevel{});
   for (const SoftSphere& s : spheres)
@@ -92,8 +92,8 @@ SoftSphere sphere_in(const SearchTask& task, std::size_t slot) {
   return {{task.x[slot], task.y[slot], task.z[slot]}, task.r[slot]};
 }
 
-/// Cuts slots into parts that are searched around together: few spheres, and so close together that hardly
-/// more are candidates for all of them than for one.
+/// Cuts slots into parts that share their candidates: few spheres, so close together that all of them have
+/// hardly more candidates than one has.
 class PartsOfSlots {
  public:
   explicit PartsOfSlots(const SearchTask& task) : task_(task) {
@@ -173,7 +173,7 @@ void FoundNeighbors::find(const SoftKernels& kernels, const SearchTask& task, st
       ends_[slot - first] = used_;
     }
   }
-  // Now that they stay where they are.
+  // Only now, when `all_` is no longer moved.
   std::size_t begin = 0;
   for (std::size_t slot = first; slot < last; ++slot) {
     const std::size_t end = ends_[slot - first];

@@ -12,22 +12,23 @@
 
 namespace bernal {
 
-/// The spheres of a region by the cells of a background grid, one level of it for every octave of radii, for
-/// the search for neighbours.
+/// The spheres of a region, sorted by the cells of a background grid with a level for every octave of radii:
+/// the search for neighbours reads them.
 ///
-/// What it buys: the kernels read places and radii in the number format and the width that they work with. With
-/// the order of sweeps the lists of 2·10^5 spheres take 0.2 µs a sphere; to ask a `CellGrid` for about as many
-/// neighbours takes 1.1 with 10^5.
+/// What it buys: the kernels read places and radii in the number format and the width that they work with.
+/// Lists of 2·10^5 spheres take 0.2 µs a sphere, the order of sweeps included; a `CellGrid` with 10^5 spheres
+/// takes 1.1 for about as many neighbours.
 class RegionCells {
  public:
-  /// Sorts the spheres of the region, each named by its index here; those with a radius of NaN are left out.
+  /// Sorts the spheres of the region by cell. Later calls name a sphere by its index here. Spheres with a
+  /// radius of NaN are left out.
   /// Cost: some 10 ns a sphere.
   void sort(std::span<const SoftSphere> spheres, const SoftRegion& region, const std::array<double, 3>& edges,
             const SoftSizes& sizes, float skin, bool in_threads = false);
 
-  /// Good until they are sorted anew.
+  /// Valid until the next `sort`.
   SearchTask task() const;
-  /// How many spheres there are, once they are sorted.
+  /// The number of spheres that were sorted.
   std::size_t size() const { return start_.back(); }
 
  private:
@@ -41,13 +42,13 @@ class RegionCells {
   BucketRoom room_;
   std::vector<std::int32_t> x_, y_, z_;
   std::vector<float> r_;
-  std::vector<std::uint32_t> places_;  // these columns have `lanes` more entries that say nothing
+  std::vector<std::uint32_t> places_;  // these columns have `lanes` unused entries more
 };
 
-/// For the candidates of searches. Memory that is never touched costs nothing.
+/// Memory for the candidates of searches. Pages that are never touched cost nothing.
 class CandidateRoom {
  public:
-  /// Among so many spheres, at least.
+  /// For searches among at least this number of spheres.
   void reserve(std::size_t spheres) {
     if (size_ >= spheres + 2 * lanes) return;
     size_ = spheres + 2 * lanes;
@@ -66,33 +67,33 @@ class CandidateRoom {
   std::unique_ptr<std::uint32_t[]> places_;
 };
 
-/// Of one sphere.
+/// The neighbours of one sphere.
 struct NeighborList {
   const std::uint32_t* first = nullptr;
   std::uint32_t size = 0;
 };
 
-/// The neighbours of the spheres in some slots of the cells. They are found in the order of the slots, as
-/// those that follow each other lie close together: in the order of sweeping they are far from each other.
+/// The neighbours of the spheres in some slots of the cells. The search goes through the slots in order,
+/// because spheres in successive slots lie close together; in the order of sweeps they do not.
 class FoundNeighbors {
  public:
-  /// Of those in the slots [first, last) whose place is below `own`, which `of_place` then has until this is
-  /// used again. Cost: some 50 ns a sphere.
+  /// Finds the neighbours of the spheres in the slots [first, last) whose place is below `own`, and writes
+  /// their lists to `of_place`. These are valid until the next call. Cost: some 50 ns a sphere.
   void find(const SoftKernels& kernels, const SearchTask& task, std::size_t first, std::size_t last,
             std::size_t own, CandidateRoom& room, std::vector<NeighborList>& of_place);
 
-  /// What is in the lists.
+  /// The entries of all lists.
   std::span<const std::uint32_t> all() const { return {all_.data(), used_}; }
 
  private:
-  std::vector<std::uint32_t> all_;  // with room behind them
+  std::vector<std::uint32_t> all_;  // the first `used_` count
   std::size_t used_ = 0;
-  std::vector<std::size_t> ends_;  // of the lists, by slot
+  std::vector<std::size_t> ends_;  // where the lists end, by slot
 };
 
-/// Appends the rows of a group with these lists, every place p as name_of(p), and lists that are shorter than
-/// others filled up with the own place of their sphere, from `first` on, which it does not touch. Returns how
-/// many rows these are. Cost: about 1 ns a neighbour.
+/// Appends the rows of a group that has these lists, and returns the number of rows. A place p is written as
+/// name_of(p). Lists that are shorter than the longest are filled up with the sphere's own place, which is
+/// `first` for the first of them; a sphere does not touch itself. Cost: about 1 ns a neighbour.
 template <class Index, class NameOf>
 std::uint32_t append_rows(const NeighborList* lists, std::size_t first, const NameOf& name_of,
                           std::vector<Index>& rows) {

@@ -14,20 +14,20 @@
 
 namespace bernal {
 
-/// From so many spheres on sweeps a growth need not become more as fast as the paper says for the packing
-/// fraction to stay what it is.
+/// Up to this number of spheres the sweeps between two growths increase as the paper says. Beyond it they
+/// need not increase for the packing fraction to stay what it is.
 inline constexpr std::size_t enough_for_sweeps = 10000;
 
-/// The largest overlap ratio at which spheres in a growing box count as relaxed. Far below `options.stop`: a
-/// few more growths are cheap, and the packing fraction that the exact growth of the box at the end takes
-/// away is three times the overlap that is left. Single precision shows no less than 4e-6.
+/// The largest overlap ratio at which spheres in a growing box count as relaxed. It is far below
+/// `options.stop`, because a few more growths are cheap, and because the exact growth at the end lowers the
+/// packing fraction by three times the overlap that is left. Single precision resolves 4e-6.
 inline double least_overlap(const Relax& options, double allowed) {
   return std::max({0.05 * options.stop, std::min(allowed, options.stop), 4e-6});
 }
 
-/// Sweeps of a cycle, at the pace for spheres of that largest overlap ratio, of which `done` are over; it is
-/// 0 again in the end. After each but the last, asks whether to stop. Returns what the last of them met, or
-/// nothing where stopped; `each`: the engine's `squeeze` then tells about each sphere too.
+/// Does the sweeps of a cycle from number `done` on, at the pace for the largest overlap ratio `molr`, and
+/// sets `done` to 0. Calls `stop` after each sweep but the last. Returns the largest overlap ratio that the
+/// last sweep met, or nothing if `stop` said so. With `each` the engine's `squeeze` is then known.
 template <int D, bool each, class Engine, class Stop>
 std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double molr, Stop&& stop) {
   const Pace pace = pace_for(molr);
@@ -45,14 +45,14 @@ std::optional<double> sweep_cycle(Engine& packing, int sweeps, int& done, double
     return packing.sweep_to_overlap(omega);
 }
 
-/// Largest overlap ratio below which growths of the box are predicted: they are few then.
+/// Largest overlap ratio below which growths of the box are predicted.
 inline constexpr double predictable = 3e-3;
 
 struct GrowingBox {
   double stop;  ///< largest overlap ratio to end with
   int sweeps;   ///< between two growths
   double beta;
-  /// By which it grows, about, when growths begin to be predicted.
+  /// The overlap by which the box grows, about, when growths begin to be predicted.
   double last_overlap = predictable;
 };
 
@@ -62,19 +62,19 @@ struct BoxGrowth {
   double molr = 1;  ///< the largest overlap ratio
   double last_molr = 0, least_molr = 1;
   double growth = 0;
-  int cycle = 1, sweeps = 0;              ///< over in this cycle
-  double first_overlap = 0, overlap = 0;  ///< by which it grew at first and last, before prediction
+  int cycle = 1, sweeps = 0;              ///< sweeps that are over in this cycle
+  double first_overlap = 0, overlap = 0;  ///< by which the box grew first and last, without prediction
 };
 
-/// Of all spheres, so far.
+/// The number of sweeps so far.
 inline std::uint64_t sweeps_of(const BoxGrowth& growth, const GrowingBox& box, StageEnd end) {
   const int cycles = end == StageEnd::converged ? growth.cycle : growth.cycle - 1;
   return static_cast<std::uint64_t>(cycles) * static_cast<std::uint64_t>(box.sweeps) +
          static_cast<std::uint64_t>(growth.sweeps);
 }
 
-/// The share of the work that is over: about as much for each factor by which the overlap falls, until
-/// growths are predicted.
+/// The share of the work that is over. Until growths are predicted, it is a function of the logarithm of the
+/// overlap.
 inline double share_of_work(const BoxGrowth& growth, const GrowingBox& box) {
   constexpr double before_prediction = 0.9, power = 0.6, until_next = 0.03;
   if (growth.overlap == 0) return 0;
@@ -87,14 +87,16 @@ inline double share_of_work(const BoxGrowth& growth, const GrowingBox& box) {
          until_next * growth.sweeps / box.sweeps;
 }
 
-/// Spheres push each other apart while their box grows, each time by `overlap_of(cycle, least)` / beta, or
-/// `overlap_of(cycle, least, squeeze)`, which is told of each sphere what the engine's `squeeze` is, for
-/// the least that molr, the largest overlap ratio, has been: it rises only where some spheres of very many
-/// have come so near each other before they were neighbours, and these part without more room. (Growing by it
-/// takes 0.0004 from the packing fraction of 10^4 to 10^6 spheres, 0.0012 where such a pair is met early, and
-/// once 0.017, with blocks of 3,000 spheres.) Where molr < 0.003, when it falls in proportion with the growth
-/// of the box, the next growth is 0.9 of what the last two predict, at most molr / 6; earlier, prediction
-/// costs contacts. `on_growth` is told the factor of each growth, and molr.
+/// Spheres push each other apart while their box grows. After each cycle of sweeps the edges grow by the
+/// share `overlap_of(cycle, least)` / beta, or `overlap_of(cycle, least, squeeze)` / beta with the engine's
+/// `squeeze`. `least` is the smallest value that molr, the largest overlap ratio, has had so far: molr rises
+/// only if, among very many spheres, a few pairs met before they were in each other's lists, and these part
+/// without more room. (Growth by molr itself costs 0.0004 of packing fraction with 10^4 to 10^6 spheres,
+/// 0.0012 if such a pair meets early, and once cost 0.017, with blocks of 3,000 spheres.)
+///
+/// When molr < 0.003 it falls in proportion to the growth of the box. Then the next growth is 0.9 of what the
+/// last two predict, at most molr / 6. Earlier, prediction costs contacts. `on_growth` receives the factor of
+/// each growth, and molr. Returns when molr < box.stop or `stop` says so.
 template <int D, class Engine, class Stop, class OverlapOf, class OnGrowth>
 StageEnd grow_apart(Engine& packing, const GrowingBox& box, BoxGrowth& so_far, Stop&& stop,
                     OverlapOf&& overlap_of, OnGrowth&& on_growth) {
@@ -122,20 +124,20 @@ StageEnd grow_apart(Engine& packing, const GrowingBox& box, BoxGrowth& so_far, S
   }
 }
 
-/// Tells a run how its box grows.
+/// Reports to a run how its box grows.
 class GrowthTeller {
  public:
-  /// `growth` is how far that has come, in a run of which the share `before` was over when it began. Radii
-  /// stay. O(N).
+  /// `growth` outlives this. The share `before` of the run was over when the growth began. Precondition:
+  /// radii stay. O(N).
   GrowthTeller(Work& work, const GrowingBox& box, const BoxGrowth& growth, double before = 0)
       : work_(work), volume_(work.volume_of_spheres()), box_(box), growth_(growth), before_(before) {}
 
-  /// To be called on growth.
+  /// Call it at each growth.
   void grown(double factor) {
     work_.edges *= factor;
     tell(true);
   }
-  /// To be called after sweeps: of very many spheres some take minutes until the box grows.
+  /// Call it after each sweep: with very many spheres minutes pass between two growths.
   void swept() {
     if (watch_.seconds() >= told_ + between) tell(false);
   }
@@ -157,5 +159,40 @@ class GrowthTeller {
   const Stopwatch watch_;
   double told_ = 0, done_ = 0;
 };
+
+/// Gives the memory of the places back: very many spheres need it elsewhere.
+template <class Columns>
+void forget_places(Columns& columns) {
+  for (std::vector<double>& column : columns) std::vector<double>().swap(column);
+}
+/// Makes room for the places again, after `forget_places`.
+template <int D>
+void have_places(Spheres<D>& spheres) {
+  spheres.resize(spheres.r.size());
+}
+
+/// `grow_apart` as part of a run: it reports, counts effects and may stop and be resumed. `packing` is an
+/// engine that has the places of the spheres; meanwhile `spheres` have none, in a checkpoint neither. On
+/// return `spheres` and `edges` are those of the end. `begin` says what is known at the start; the share
+/// `before` of the run is over then.
+template <int D, class Engine, class OverlapOf>
+StageEnd let_box_grow(Engine& packing, Spheres<D>& spheres, Vector<D>& edges, Work& work,
+                      const GrowingBox& box, const BoxGrowth& begin, double before, OverlapOf&& overlap_of) {
+  forget_places(spheres.x);
+  BoxGrowth growth = begin;
+  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
+  GrowthTeller teller(work, box, growth, before);
+  const auto stop = [&] {
+    teller.swept();
+    return work.stop();
+  };
+  const StageEnd end = grow_apart<D>(packing, box, growth, stop, overlap_of,
+                                     [&](double factor, double) { teller.grown(factor); });
+  work.effects["neighbour lists"] += packing.lists_built();
+  work.effects["relaxation"].calls += sweeps_of(growth, box, end);
+  have_places(spheres);
+  packing.write_to(spheres, edges);
+  return end;
+}
 
 }  // namespace bernal

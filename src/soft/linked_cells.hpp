@@ -9,7 +9,7 @@
 
 namespace bernal {
 
-/// What is read together lies together.
+/// A sphere as one record, since its members are read together.
 template <int D>
 struct PlacedSphere {
   using ArchivedAsBytes = void;
@@ -17,8 +17,8 @@ struct PlacedSphere {
   double r;
 };
 
-/// The spheres of a periodic box [0, edges) in slots: all that is not the search. A sphere has a number,
-/// which it keeps, and a slot, where it is kept.
+/// The spheres of a periodic box [0, edges), without a search. A sphere has a number, which never changes,
+/// and a slot, the index at which it is stored.
 template <int D>
 class Slots {
  public:
@@ -53,9 +53,9 @@ class Slots {
   std::vector<Slot> slot_of_;             // by number
 };
 
-/// The spheres of a periodic box as Zhao, Li & Liu keep them: in doubly linked lists, one a cell of the
-/// background grid (`CellGrid`), which a sphere leaves for another whenever it crosses into that cell. Slots
-/// are given once, in the order of the cells, so that what is near in space begins near in memory.
+/// The spheres of a periodic box as Zhao, Li & Liu keep them: each cell of the background grid (`CellGrid`)
+/// has a doubly linked list, and a sphere that moves into another cell changes its list. Slots are given
+/// once, in the order of the cells, so that near spheres are near in memory at first.
 template <int D>
 class LinkedCells : public Slots<D> {
  public:
@@ -79,13 +79,13 @@ class LinkedCells : public Slots<D> {
 
   void begin_sweep() {}
 
-  /// Calls visit(slot) at least for every sphere whose surface, or that of an image, is nearer than `reach`
-  /// to c.
+  /// Calls visit(slot) for every sphere that has an image whose surface is nearer to c than `reach`, and
+  /// perhaps for others.
   template <class Visit>
   void for_each_near(const Vector<D>& c, double reach, Visit&& visit) const {
     grid_.for_each_near(c, reach, visit);
   }
-  /// Brings what such a search has visited into the order of the lists, in which it is here already.
+  /// Sorts the results of a search into the order of the lists. Here they are in that order already.
   void arrange(std::span<Slot>, const Vector<D>&, double) const {}
 
   /// Moves a sphere; its centre is wrapped into the box.

@@ -6,9 +6,9 @@
 namespace bernal {
 namespace {
 
-/// In sweeps: with half of the skin a sweep costs a quarter less, and a build as much as ten sweeps.
+/// In sweeps. With half of the skin a sweep costs a quarter less; a build costs as much as ten sweeps.
 constexpr int long_life = 80, short_life = 30;
-/// Skin, in the thickest.
+/// The least skin, over the largest.
 constexpr float thinnest = 0.25f;
 constexpr int longest_patience = 16;
 
@@ -23,12 +23,12 @@ FarthestMoves FarthestMoves::of_parts(std::vector<float> squares) {
   return {std::sqrt(*nth), all};
 }
 
-/// Nothing is known before the first sweep, when the spheres are at their fastest.
+/// In lengths a sweep. Before the first sweep it is not known, and spheres are at their fastest.
 double ListLife::speed_of(double moved, double limit) const {
   return is_over_ ? limit : std::max((moved - moved_) / std::max(1, sweeps_), 1e-9);
 }
 
-/// Where lists last long, shorter ones that do not last so long cost less.
+/// Shorter lists cost less if long ones would last long.
 void ListLife::choose_skin() {
   const float skin = skin_;
   if (age_ > long_life) skin_ = std::max(thinnest * thickest_skin_, 0.5f * skin);
@@ -41,7 +41,7 @@ void ListLife::begin() {
   is_over_ = false;
 }
 
-/// The limit is that of the skin when it was looked at.
+/// `limit` belongs to the skin before this look.
 void ListLife::looked(double moved, double limit, double speed) {
   moved_ = moved;
   age_ += sweeps_;

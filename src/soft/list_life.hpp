@@ -6,44 +6,43 @@
 
 namespace bernal {
 
-/// How far spheres have moved since their lists were built.
+/// How far spheres have moved since their lists were built: the farthest of all, and the farthest of most.
 struct FarthestMoves {
   double of_most, of_all;
 
-  /// Spheres that follow each other in the order of sweeps.
+  /// The number of spheres, in the order of sweeps, that make one part.
   static constexpr std::size_t part = 4096;
-  /// From the squares of the farthest moves in parts. Of most: that of a part in which they moved farther
-  /// than in nine tenths of the parts, which does not become the larger the more spheres there are.
+  /// From the squares of the farthest move in each part. `of_most` is the ninth decile of the parts, which
+  /// does not grow with the number of spheres.
   static FarthestMoves of_parts(std::vector<float> squares);
 };
 
-/// How long neighbour lists with a skin last: until most spheres have moved by what they may be worn, in
-/// skins. Above 1, neighbours may be missed until then. Looks at what has moved only as often as the speed of
-/// the last sweeps suggests. A pair that is missed for some sweeps overlaps for so much longer, no more.
+/// How long neighbour lists with a skin last: until most spheres have moved by `wear` skins. With a wear
+/// above 1 neighbours may be missed before that; such a pair only overlaps for some sweeps more. It looks at
+/// the moves as often as the speed of the last sweeps suggests.
 class ListLife {
  public:
   explicit ListLife(float skin) : skin_(skin), thickest_skin_(skin) {}
 
-  /// Of the lists, in the unit of the radii.
+  /// In the unit of the radii.
   float skin() const { return skin_; }
-  double wear() const { return wear_; }
   void wear(double skins) { wear_ = skins; }
   bool is_over() const { return is_over_; }
 
   void swept() { ++sweeps_; }
-  /// Spheres that were not near each other may be now.
+  /// The lists are no longer valid: spheres that were not near each other may be now.
   void end() { is_over_ = true; }
-  /// Before the next sweep.
+  /// Looks at the moves before the next sweep.
   void look_soon() { patience_ = 0; }
-  /// By so much at most, in place; looked at before the next sweep.
+  /// Radii grew by at most this length, in place. Looks at the moves before the next sweep.
   void radii_grew(float most) {
     grown_ += static_cast<double>(most);
     patience_ = 0;
   }
 
-  /// To be called before each sweep. Where lists have to be built anew, or are not there yet, chooses the
-  /// skin and calls `build`; `look` returns FarthestMoves. `for_all`: not only most spheres may not have
-  /// moved farther.
+  /// Call it before each sweep. If the lists are worn out, or not there yet, it chooses the skin and calls
+  /// `build`. `look` returns FarthestMoves. With `for_all` the lists last until any sphere has moved that
+  /// far.
   template <class Look, class Build>
   void keep(bool for_all, bool are_there, Look&& look, Build&& build) {
     if (!is_over_ && sweeps_ < patience_) return;
@@ -74,12 +73,12 @@ class ListLife {
 
   float skin_, thickest_skin_;
   bool is_over_ = true;
-  double grown_ = 0;  // at most, by exchanges since they were built
-  double moved_ = 0;  // most of them since then, when it was last looked at
+  double grown_ = 0;  // by what radii grew, at most, since the lists were built
+  double moved_ = 0;  // `of_most` at the last look
   double wear_ = 0.9;
-  int age_ = 0;       // in sweeps, when it was last looked at
-  int sweeps_ = 0;    // since it was last looked at
-  int patience_ = 0;  // sweeps until it is looked at again
+  int age_ = 0;       // of the lists, in sweeps, at the last look
+  int sweeps_ = 0;    // since the last look
+  int patience_ = 0;  // sweeps from one look to the next
 };
 
 }  // namespace bernal

@@ -16,17 +16,17 @@ namespace {
 
 /// In mean diameters, by dimension: lists become longer by its D-th power.
 constexpr double relative_skin[] = {0.4, 0.4, 0.4, 0.3, 0.25, 0.2, 0.17, 0.15};
-/// Of lists, in sweeps, and the thinnest_share skin in the thickest.
+/// Of lists, in sweeps; and the least skin over the largest.
 constexpr int longest_life = 80, shortest_life = 20;
 constexpr double thinnest_share = 0.125;
-/// In a box of fewer of the largest radii spheres may overlap in several images; and a little more, for
-/// rounding.
+/// In a box with an edge below this number of largest radii, spheres may overlap in several images. It is a
+/// little above 4, for rounding.
 constexpr double narrow = 4.001;
 /// Places are read four at a time.
 constexpr std::size_t block = 4;
-/// A move by this share of the box is as good as any longer one.
+/// The longest move, in units of the coordinates.
 constexpr float longest_move = 0x1p30f;
-/// In sums of radii, of spheres whose centres coincide.
+/// The distance, in sums of radii, that stands for that of spheres whose centres coincide.
 constexpr float least_distance = 1e-3f;
 
 }  // namespace
@@ -78,7 +78,7 @@ void NeighborRelaxation<D>::keep_between_walls(const std::vector<bool>& walls, d
   stale_ = true;
 }
 
-/// Whole steps of 2^-32 are beyond the radius in single precision: what that is rounded by is added twice.
+/// Coordinates have steps of 2^-32, radii are rounded to single precision: twice that error is added.
 template <int D>
 void NeighborRelaxation<D>::stop_at_walls(Id i) {
   constexpr double rounding = 1 + 0x1p-23;
@@ -89,7 +89,7 @@ void NeighborRelaxation<D>::stop_at_walls(Id i) {
   }
 }
 
-/// A step that would end beyond a wall ends at it, and not at the other one.
+/// A step that would end beyond a wall ends at this wall; it does not wrap round to the other one.
 template <int D>
 void NeighborRelaxation<D>::move_between_walls(Id i, const Ints& step) {
   const Place before = places_[i];
@@ -107,7 +107,7 @@ inline typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::away(const 
   return __builtin_convertvector(__builtin_bit_cast(Ints, Whole(to.x - from.x)), Floats) * scale_;
 }
 
-/// Of the distances from four spheres.
+/// The squared distances from four spheres.
 template <int D>
 inline __m128 NeighborRelaxation<D>::squares_of(const Place& from, Id a, Id b, Id c, Id d) const {
   const auto square = [&](Id k) {
@@ -142,7 +142,7 @@ double NeighborRelaxation<D>::sweep_and_measure(float omega) {
   return largest;
 }
 
-/// Those of its list, by the nearest image: none of the others can be nearer.
+/// The spheres of its list whose nearest image overlaps it.
 template <int D>
 const typename NeighborRelaxation<D>::Id* NeighborRelaxation<D>::find_overlapping(Id i) {
   const Place me = places_[i];
@@ -161,18 +161,17 @@ const typename NeighborRelaxation<D>::Id* NeighborRelaxation<D>::find_overlappin
   return end;
 }
 
-/// What sphere j does at that distance; d is the way from it.
+/// What sphere j does to sphere i across this way, which leads from j to i.
 template <int D>
-inline void NeighborRelaxation<D>::add_to(Push& push, Id i, Id j, Floats d, float distance) const {
+inline void NeighborRelaxation<D>::add_to(Push& push, Id i, Id j, const Floats& way, float distance) const {
   const float reach = radii_[i] + radii_[j], weight = 2 * radii_[j] / reach;
   const float ratio = 1 - distance / reach;
   push.squeeze += ratio * ratio;
   push.largest = ratio > push.largest ? ratio : push.largest;
-  if (!(distance > 0)) {
-    distance = least_distance * reach;
-    d = any_direction(i, j) * distance;
-  }
-  push.sum += d * (weight * (reach / distance - 1));
+  if (distance > 0)
+    push.sum += way * (weight * (reach / distance - 1));
+  else
+    push.sum += any_direction(i, j) * (least_distance * reach) * (weight * (1 / least_distance - 1));
   push.contacts += weight;
   push.depth += weight * ratio * reach;
 }
@@ -210,7 +209,7 @@ typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_images(Id 
   return push;
 }
 
-/// Away from a sphere with the same centre; a different one for each pair.
+/// The direction away from a sphere with the same centre; another one for each pair.
 template <int D>
 typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::any_direction(Id i, Id j) const {
   const Id a = std::min(ids_[i], ids_[j]), b = std::max(ids_[i], ids_[j]);

@@ -10,42 +10,41 @@
 
 namespace bernal {
 
-/// Overlapping spheres that push each other apart in a periodic box of 1 to 8 dimensions: the state of a
-/// relaxation. What `SoftPacking` is in a wide box of up to three dimensions, this is in any other: one
-/// sphere after the other, in any box, and without layers of grids for widely differing sizes.
+/// Overlapping spheres that push each other apart in a periodic box of 1 to 8 dimensions, also between walls:
+/// the state of a relaxation where `SoftPacking` does not serve. It moves one sphere after the other, and has
+/// no levels of grids for widely differing sizes.
 ///
-/// In single precision and fixed point: a coordinate is a whole number of edge / 2^32, so that differences
-/// wrap round to the shortest image by themselves. Overlap ratios are good to about 1e-6. Where a box has
-/// less than two diameters across, spheres overlap in several images; all of them push.
+/// Numbers are in single precision and fixed point, so that overlap ratios are good to about 1e-6. A
+/// coordinate is a whole number of edge / 2^32, so that differences wrap round to the nearest image. In a box
+/// less than two diameters across two spheres may overlap in several images; all of them push, as in
+/// `SoftKernels`.
 template <int D>
 class NeighborRelaxation {
  public:
   /// Centres in [0, edge). Precondition: every edge is at least the largest diameter.
   NeighborRelaxation(const Spheres<D>& spheres, const Vector<D>& edges);
 
-  /// Along axes that have walls, centres are kept `share` times their radius away from 0 and from the edge,
-  /// or in the middle where there is no room for that. So no sphere reaches an image of another there.
+  /// Along axes with walls, centres keep `share` times their radius away from 0 and from the edge, or stay in
+  /// the middle if there is no room for that. So no sphere reaches an image of another across a wall.
   void keep_between_walls(const std::vector<bool>& walls, double share);
 
   /// Lists are built anew when a sphere has moved by `wear` times half of the skin. Above 1, neighbours may
   /// be missed until then. 0.9 where nothing is said.
   void wear_lists(double wear) { wear_ = wear; }
 
-  /// Every sphere is moved once, by min(omega / n, 1) Σ w (ri + rj - d) u over those that it overlaps, with u
-  /// the unit vector away from the other, w = 2 rj / (ri + rj) and n = Σ w: of a pair the larger one gives
-  /// way less. Cost: 45 ns a sphere in two dimensions, 65 ns in four, 130 ns in eight.
+  /// Moves every sphere once, as `SoftKernels::sweep` does. Cost: 45 ns a sphere in two dimensions, 65 ns in
+  /// four, 130 ns in eight.
   void sweep(float omega) { sweep_and_measure(omega); }
-  /// The same; returns the largest overlap ratio that was met.
+  /// The same; returns the largest overlap ratio that the sweep met.
   double sweep_and_measure(float omega);
   double sweep_to_overlap(float omega) { return sweep_and_measure(omega); }
-  /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
+  /// As `SoftPacking::squeeze` and `SoftPacking::forces`.
   std::vector<float> squeeze() const { return by_id(squeeze_); }
-  /// Of each sphere the sum of the forces on it, as `SoftPacking::forces`.
   std::vector<float> forces() const { return by_id(force_); }
   /// Sphere to[i] takes the place of sphere i: `to` is a permutation. Cost: O(N).
   void exchange(const std::vector<std::uint32_t>& to);
 
-  /// The box and the distances grow, or shrink; the radii do not.
+  /// Multiplies the box and all distances; radii stay.
   void grow(double factor);
 
   void write_to(Spheres<D>& spheres, Vector<D>& edges) const;
@@ -53,7 +52,7 @@ class NeighborRelaxation {
   /// How often lists were built.
   const Effect& lists_built() const { return lists_built_; }
 
-  /// All of its state, in one that was made of as many spheres.
+  /// Writes or reads the state. What reads it was made of the same number of spheres.
   void archive(Archive& a) {
     a(edges_, scale_, inverse_scale_, walled_, wall_share_, skin_, places_, radii_, ids_, squeeze_, force_,
       neighbors_, list_, built_at_, hits_, stale_, wear_, age_, grown_, lists_built_);
@@ -75,7 +74,7 @@ class NeighborRelaxation {
   const Id* find_overlapping(Id i);
   Push push_from_nearest(Id i, const Id* end) const;
   Push push_from_images(Id i, const Id* end) const;
-  void add_to(Push& push, Id i, Id j, Floats away, float distance) const;
+  void add_to(Push& push, Id i, Id j, const Floats& way, float distance) const;
   Floats any_direction(Id i, Id j) const;
   void keep_lists_valid();
   bool moved_too_far() const;
@@ -95,15 +94,15 @@ class NeighborRelaxation {
   float largest_radius_ = 0;
   std::vector<int> walled_;  // axes
   double wall_share_ = 1;
-  double thickest_skin_, skin_;  // spheres are neighbours where the gap between them is less
-  std::vector<Place> places_;    // sorted by cell; behind them some that touch nothing
+  double thickest_skin_, skin_;  // spheres are neighbours if the gap between them is less
+  std::vector<Place> places_;    // sorted by cell; a few that touch nothing follow
   std::vector<float> radii_;
   std::vector<Id> ids_;
   std::vector<float> squeeze_, force_;
 
   FixedPointGrid<D> grid_;
   std::vector<Id> neighbors_;      // four by four; padded with count_
-  std::vector<std::size_t> list_;  // where the list of each begins in neighbors_; one more than spheres
+  std::vector<std::size_t> list_;  // where the list of each sphere begins in neighbors_, and the end
   std::vector<Place> built_at_;
   std::vector<Id> hits_;
   bool stale_ = true;

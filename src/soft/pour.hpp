@@ -5,17 +5,17 @@
 
 namespace bernal {
 
-/// Gives the spheres of the drawn sequence that have no place one above those that have: relaxation packs
-/// them in the part of the container that they fill at the packing fraction that `how` says, or the lowest
-/// larger one in which there is room for them; where the bed's height is given, or the container does not
-/// hold them, as many as have that packing fraction. What stands there stays where it is. `whole`: what of
-/// the container it leaves, and `heights` of that. Precondition: the spheres stand in a bed. Cost: that of
-/// relaxation.
+/// Places those spheres of the drawn sequence that have no place yet above those that have one. Relaxation
+/// packs them in the part of the container that they fill at the packing fraction of `how`, or in the
+/// smallest larger part that has room for them. If the height of the bed is given, or the container does not
+/// hold all, it places as many as have that packing fraction. Spheres that stand there stay where they are.
+/// `whole` is the part of the container that they leave, and `heights` belongs to it. Precondition: the
+/// spheres stand in a bed. Cost: that of relaxation.
 StageEnd pour(Work& work, const BedTop& top, const std::shared_ptr<const Container>& whole,
               const Heights& heights, Laying& how);
 
-/// Those that stand there fall and roll to rest, as they do without any that are still to come: what rested
-/// then stays where it is, however small those are.
+/// The spheres that stand there fall and roll to rest before others come. Spheres at rest then stay where
+/// they are when others come.
 StageEnd rest_first(Work& work, const Vector<3>& down, double still);
 
 }  // namespace bernal

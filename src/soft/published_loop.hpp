@@ -11,8 +11,8 @@
 
 namespace bernal {
 
-/// A sweep of Zhao, Li & Liu (2007) over a periodic box, in double, the spheres in the order of their
-/// numbers. `Cells<D>` keeps and finds them; whatever it is, the packing is the same to the bit.
+/// The sweeps of Zhao, Li & Liu (2007) over a periodic box, in double, with the spheres in the order of their
+/// numbers. `Cells<D>` keeps and finds the spheres; it does not change the packing.
 template <int D, template <int> class Cells = LinkedCells>
 class PublishedLoop {
  public:
@@ -25,7 +25,7 @@ class PublishedLoop {
         cells_({edges}, spheres, std::ranges::min(spheres.r), r_max_),
         near_(spheres.size() + 1) {}
 
-  /// Every sphere once. Returns the largest overlap ratio that was met.
+  /// Moves every sphere once. Returns the largest overlap ratio that it met.
   double sweep() {
     double largest = 0;
     cells_.begin_sweep();
@@ -42,21 +42,20 @@ class PublishedLoop {
 
   const Vector<D>& edges() const { return cells_.box().edges; }
   void write_to(Spheres<D>& spheres) const { cells_.write_to(spheres); }
-  /// So far.
+  /// The number of distances that were computed so far.
   std::uint64_t pairs_tested() const { return tested_; }
 
-  /// All of its state, in one that was made of as many spheres in the same box.
+  /// Writes or reads the state. What reads it was made of the same number of spheres in the same box.
   void archive(Archive& a) { a(random_, cells_, tested_); }
 
  private:
   using Slot = typename Cells<D>::Slot;
 
-  /// Of the distance squared: rounding leaves no pair out.
+  /// Relative, of a squared distance: so rounding leaves no pair out.
   static constexpr double rounding = 1e-9;
 
-  /// All spheres, but this one, with an image across a gap of less than `gap`, to rounding and perhaps a
-  /// little more, in the order of the lists. Most of what is near enough for the cells is not so near: these
-  /// are told by the shortest image alone, without a branch.
+  /// All other spheres with an image across a gap below `gap`, up to rounding, in the order of the lists.
+  /// Most spheres that the cells give are farther away; the nearest image alone tells them, without a branch.
   std::span<const Slot> near(Slot me, double gap) {
     const PlacedSphere<D> sphere = cells_[me];
     const Vector<D> edges = this->edges();
@@ -82,8 +81,8 @@ class PublishedLoop {
     return all;
   }
 
-  /// Moves a sphere to the mean of the places where it would touch one of those that it overlaps. Returns the
-  /// largest of its overlap ratios, before.
+  /// Moves a sphere to the mean of the places at which it would touch one of those that it overlaps. Returns
+  /// the largest overlap ratio that it had.
   double push(Slot me) {
     const auto [c, r] = cells_[me];
     Vector<D> sum = Vector<D>::Zero();
@@ -104,8 +103,8 @@ class PublishedLoop {
     return largest;
   }
 
-  /// Moves a sphere, which overlaps nothing, towards the one across the smallest gap until they touch. As all
-  /// other gaps are wider, it overlaps nothing then either.
+  /// Moves a sphere that overlaps nothing towards the nearest one until they touch. All other gaps are wider,
+  /// so it then overlaps nothing either.
   void settle(Slot me) {
     const auto [c, r] = cells_[me];
     const double farthest = edges().norm();
@@ -123,8 +122,8 @@ class PublishedLoop {
     if (std::isfinite(gap)) cells_.move(me, c + gap * towards);
   }
 
-  /// Of a displacement, the images that may be shorter than `reach`: the shortest alone where the box is
-  /// wide.
+  /// Visits the images of a displacement that may be shorter than `reach`; in a wide box that is the shortest
+  /// only.
   template <class Visit>
   void for_each_image(const Vector<D>& displacement, double reach, Visit&& visit) const {
     if (2 * reach <= edges().minCoeff()) {

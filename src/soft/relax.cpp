@@ -117,82 +117,55 @@ bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Wo
   return free[0] <= edges[0] / (1 - options.stop);
 }
 
-/// Gives their memory back: of very many spheres it is needed elsewhere.
-template <class Columns>
-void forget_places(Columns& columns) {
-  for (std::vector<double>& column : columns) std::vector<double>().swap(column);
-}
-/// Room for a place of each again. A checkpoint that is written meanwhile has none either.
+/// The published relaxation on sorted arrays, with neighbour lists and over-relaxed steps. It is about a
+/// hundred times as fast as the loop of the paper, and its packings are a little denser. It differs from that
+/// loop in six ways.
+///  - A sphere moves by min(omega / n, 1) times the sum of its n overlaps, with omega about 5. The paper's
+///    1 / n is a third of a Newton step at the five or six contacts of a packed sphere.
+///  - The larger sphere of a pair gives way less, in proportion to the radii (SoftKernels::sweep). By the
+///    plain mean over its contacts a large sphere would stay where its many small neighbours hold it.
+///  - The order of the spheres in a sweep lets many of them move at once.
+///  - The last growths of the box are predicted (`grow_apart`).
+///  - With more than 10,000 spheres the number of sweeps between two growths no longer increases, and the box
+///    grows by the least value that the largest overlap ratio has had. Up to 10^7 spheres the packing
+///    fraction stays within 0.002 of that of 10,000.
+///  - It ends with overlaps far below `options.stop`.
+/// In four dimensions and more, and between walls, `NeighborRelaxation` sweeps one sphere after the other, on
+/// lists for one size.
+///
+/// `overlap` is the largest overlap ratio at the start; 1 where it is not known. Preconditions and results
+/// are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists included; 0.07 µs in four
+/// dimensions and 0.13 µs in eight, lists not included.
 template <int D>
-void have_places(Spheres<D>& spheres) {
-  spheres.resize(spheres.r.size());
-}
-
-template <int D, class Packing>
-StageEnd let_box_grow(Packing& packing, Spheres<D>& spheres, Vector<D>& edges, Work& work,
-                      const Relax& options, double overlap) {
-  forget_places(spheres.x);  // which the engine has
+StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
   const GrowingBox box{.stop = least_overlap(options, work.allowed_overlap),
                        .sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough_for_sweeps)),
                        .beta = options.beta};
-  BoxGrowth growth{.molr = overlap};
-  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
-  GrowthTeller teller(work, box, growth);
-  const auto stop = [&] {
-    teller.swept();
-    return work.stop();
+  const auto grow = [&](auto& packing) {
+    return let_box_grow<D>(packing, spheres, edges, work, box, {.molr = overlap}, 0,
+                           [](int, double molr) { return molr; });
   };
-  const StageEnd end = grow_apart<D>(
-      packing, box, growth, stop, [](int, double molr) { return molr; },
-      [&](double factor, double) { teller.grown(factor); });
-  work.effects["neighbour lists"] += packing.lists_built();
-  work.effects["relaxation"].calls += sweeps_of(growth, box, end);
-  have_places(spheres);
-  packing.write_to(spheres, edges);
-  return end;
-}
-
-/// The published relaxation on sorted arrays, with neighbour lists and over-relaxed steps: some hundred times
-/// as fast as the loop of the paper, and a little denser. It differs from that in six things.
-///  - A sphere moves by min(omega / n, 1) times the sum of its n overlaps, omega about 5. The paper's 1 / n
-///  is
-///    a third of a Newton step at the five or six contacts of a packed sphere.
-///  - Of a pair the larger sphere gives way less, in proportion to the radii (SoftKernels::sweep): the mean
-///    over all contacts would leave it where its many small neighbours hold it.
-///  - Spheres are swept in an order in which many can be moved at once.
-///  - Near the end growths of the box are predicted (`grow_apart`).
-///  - Beyond 10,000 spheres no more sweeps are made between two growths, and the box grows by the least that
-///    the largest overlap ratio has been: the packing fraction then is within 0.002 what it is there, up to
-///    10^7.
-///  - It ends with overlaps far below `options.stop`.
-/// From four dimensions on, and between walls, spheres are swept one after the other, on lists for one size
-/// (NeighborRelaxation).
-/// `overlap` is the largest overlap ratio to begin with; 1 where it is not known.
-/// Preconditions and results are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists
-/// included; 0.07 µs in four dimensions and 0.13 µs in eight, lists not included.
-template <int D>
-StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
-  have_places(spheres);
   if constexpr (D == 3)
     if (options.device == RelaxDevice::gpu) {
       DevicePacking packing(spheres, edges, spheres_on_gpu());
-      const StageEnd end = let_box_grow<D>(packing, spheres, edges, work, options, overlap);
+      const StageEnd end = grow(packing);
       work.account = "on " + packing.device_name();
       return end;
     }
-  SoftEngine<D> packing(spheres, edges, 1, work.walls);
-  return let_box_grow<D>(packing, spheres, edges, work, options, overlap);
+  SoftEngine<D> packing(spheres, edges, work.walls);
+  return grow(packing);
 }
-/// `overlap` is the largest overlap ratio to begin with, where the fast engine has brought them to it.
+
+/// `overlap` is the largest overlap ratio at the start, where it is known.
 template <int D>
 StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
                     std::optional<double> overlap = {}) {
+  have_places(spheres);
   if constexpr (D == 2 || D == 3)
     if (is_for_wide_sizes(work.fill_task, options))
       return relax_wide<D>(spheres, edges, work, options, overlap.value_or(1),
                            !overlap && begins_from_largest(work, options) ? share_of_placing : 0);
-  const bool engine_works = overlap || D > 3 || !work.walls.empty() || SoftEngine<D>::is_wide(spheres, edges);
-  return options.method == RelaxMethod::fast && engine_works
+  return options.method == RelaxMethod::fast
              ? relax_fast<D>(spheres, edges, work, options, overlap.value_or(1))
              : relax_by_the_book<D>(spheres, edges, work, options);
 }

@@ -6,55 +6,57 @@
 
 namespace bernal {
 
-/// Spheres that fill less than this share of what is likely to fit find places free of overlap by themselves.
+/// Below this share of the packing fraction that is likely to fit, random insertion finds places free of
+/// overlap.
 inline constexpr double dilute = 0.3;
 
-/// The paper's phi0, and in other than three dimensions what is as far above random close packing.
+/// The paper's phi0 in three dimensions; in others the packing fraction that is as far above random close
+/// packing.
 inline double dense_start(int dimension) {
   constexpr double by_dimension[] = {1.34, 1.13, 0.86, 0.62, 0.42, 0.27, 0.16, 0.093};
   return by_dimension[dimension - 1];
 }
 
-/// What it brings with it, with its price.
+/// The effects of the stage, with their prices.
 std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook& outlook);
-/// Lists and relaxation that take so long together.
+/// Lists and relaxation that take this time together.
 std::vector<PlanItem> effects_of_pushing(double seconds, const Outlook& outlook, std::string what);
-/// What filling a box by relaxation is expected to take.
+/// The time that filling a box by relaxation is expected to take.
 double seconds_of_filling_box(const Outlook& outlook);
 
 /// Sweeps between two growths of the box: `options.period`, or T = alpha (log10 N)², rounded, at least 1
 /// (equation 6; figure 5 holds the two against each other).
 int sweeps_a_cycle(const Relax& options, std::size_t spheres);
 
-/// Relaxation in a periodic box (Zhao, Li & Liu 2007): spheres start at random places in a box so small that
-/// they overlap. Where spheres overlap, each is moved to the mean of the places at which it would just touch
-/// one of them (equations 3 and 4; a sweep). After T = alpha (log10 N)² sweeps the box grows, L <- L (1 +
-/// molr / beta), molr being the largest overlap ratio (ri + rj - d) / (ri + rj) of a pair; it ends when molr
-/// < stop. Then the box grows by the last overlap, exactly: the result has none.
+/// Relaxation in a periodic box (Zhao, Li & Liu 2007). Spheres start at random places in a box so small that
+/// they overlap. In a sweep each sphere that overlaps others moves to the mean of the places at which it
+/// would just touch one of them (equations 3 and 4). After T = alpha (log10 N)² sweeps the box grows, L <- L
+/// (1 + molr / beta), where molr is the largest overlap ratio (ri + rj - d) / (ri + rj) of a pair. The loop
+/// ends when molr < stop. Then the box grows by exactly the last overlap, so that none is left.
 ///
 /// phi0 decides how dense the result becomes: in three dimensions 0.86 for random close packing, 0.60 to 0.65
-/// for random loose packing. A box that is asked for and larger than the result is met by moving all spheres
-/// apart in proportion; where it is much larger, or larger than phi0 makes it, the spheres are relaxed in
-/// that box instead. Spheres that have places already keep them, relative to the box.
+/// for random loose packing. If the scene asks for a box that is larger than the result, all spheres move
+/// apart in proportion. If that box is much larger, or larger than the one of phi0, the spheres are relaxed
+/// in it instead. Spheres that have places already keep them, relative to the box.
 ///
-/// Cost: about alpha (log10 N)² ln(1/stop) sweeps. Cancelled, it leaves the spheres free of overlap in a box
-/// that is larger than it need be.
+/// Cost: about alpha (log10 N)² ln(1/stop) sweeps. When it is cancelled, the spheres are free of overlap in a
+/// box that is larger than necessary.
 StageEnd relax(Work& work, const Relax& options);
 
-/// The published loop as it stands, in double: the oracle of the fast path. Spheres are moved in place, in
-/// the order of their numbers, and found by the background grid and its doubly linked lists. Where the box
-/// has less than two diameters across, a sphere overlaps several
-/// images of another, and all of them push. Readings of what the paper leaves open: lg is log10; T is rounded
-/// and at least 1; centres are scaled with the box; molr is the largest overlap that the last sweep met.
+/// The published loop as it stands, in double: the method of the paper, and the oracle of the fast engine. A
+/// sweep moves spheres in place, in the order of their numbers, and finds them by the background grid and its
+/// doubly linked lists. In a box less than two diameters across a sphere overlaps several images of another;
+/// all of them push. The paper leaves four points open: here lg is log10; T is rounded and at least 1;
+/// centres scale with the box; molr is the largest overlap ratio that the last sweep met.
 ///
 /// `options.settle` adds the paper's rule that a sphere which touches nothing moves to touch its nearest
-/// neighbour. It is off by default: it changes neither the packing fraction nor the coordination number
-/// beyond the scatter of seeds (N = 1,000, three seeds each: 0.6404 and 0.6399 with and without it for equal
-/// spheres, 0.6625 and 0.6630 for lognormal ones of sigma 0.3), costs up to a tenth more time, and leaves
-/// rattlers where they touch something by decree and not by chance.
+/// neighbour. It is off by default. It changes neither the packing fraction nor the coordination number
+/// beyond the scatter of seeds (N = 1,000, three seeds each: 0.6404 with it and 0.6399 without for equal
+/// spheres, 0.6625 and 0.6630 for lognormal ones of sigma 0.3). It costs up to a tenth more time, and
+/// rattlers then touch a neighbour by this rule and not by chance.
 ///
 /// Preconditions: centres in [0, edges), every edge at least twice the largest radius. On return centres and
-/// edges are those of the end; overlaps are below `options.stop` where it converged, to the motion of one
+/// edges are those of the end; where it converged, overlaps are below `options.stop`, up to the motion of one
 /// sweep. Cost: about 0.25 µs a sphere and sweep in three dimensions. Source: Zhao, Li & Liu 2007, section 2
 /// and figure 7.
 template <int D>
@@ -62,21 +64,21 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, co
 
 /// Random close packing in a container with the sizes as they were drawn.
 ///
-/// As many spheres as the target asks for are put at random places and relaxed: they overlap and push each
-/// other and are pushed by the walls, min(omega / n, 1) of the sum of n overlaps at a time (Zhao, Li & Liu
-/// 2007, equations 3 and 4, with a fixed container in place of the growing box). Where they get stuck, radii
-/// are two per cent larger for fifty sweeps, and every second time the most squeezed spheres are put into the
-/// largest holes instead, whatever is between. When that does not help any more, as many of the last of the
-/// drawn sequence are taken out as the overlaps suggest: the result is the drawn sequence less its tail.
-/// Where the target is to fill the container, more of the sequence are pushed in until even a few find no
-/// room.
+/// As many spheres as the target asks for start at random places, overlap, push each other, and are pushed by
+/// the walls: a sphere moves by min(omega / n, 1) times the sum of its n overlaps (Zhao, Li & Liu 2007,
+/// equations 3 and 4, with a fixed container in place of the growing box). Where they are stuck, radii become
+/// two per cent larger for fifty sweeps; if that did not help, or only a few are stuck, the most squeezed
+/// spheres go into the largest holes instead, wherever the holes are. When neither helps, the last spheres of
+/// the drawn sequence are taken out, as many as the overlaps suggest: the result is the drawn sequence
+/// without its tail. If the target is to fill the container, more spheres of the sequence are pushed in until
+/// even a few find no room.
 ///
-/// Random insertion helps where spheres cannot be pushed: where they are few (`dilute`), where some fit only
-/// touching the walls, which stand first, where much less than is likely comes free, and for the last few of
-/// a count.
+/// Random insertion does what pushing cannot: where spheres are few (`dilute`), where some fit only if they
+/// touch the walls (these are placed first), where far fewer than expected come free of overlap, and for the
+/// last few of a count.
 ///
-/// Spheres that are there already keep their places at first. All are put back into the bed by the same
-/// question as those of any other stage: whether they fit.
+/// Spheres that are there already keep their places at first. In the end the bed takes each sphere if it
+/// fits, as it does for any other stage.
 ///
 /// Cost: 300 sweeps where there is room to spare, some thousand where there is not; about 20 ns a sphere and
 /// sweep and 50 ns more for one at the wall.

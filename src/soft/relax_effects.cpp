@@ -17,14 +17,10 @@ namespace {
 
 constexpr double microsecond = 1e-6;
 
-/// A sphere and sweep against that of three dimensions, by dimension; and where the box is too narrow for
-/// sorted arrays, or has walls, and spheres are swept one after the other, as they are from four dimensions
-/// on.
+/// A sphere and sweep against that of three dimensions, by dimension; and between walls, where spheres are
+/// swept one after the other, as they are from four dimensions on.
 constexpr double by_dimension[] = {12, 0.55, 1, 5.5, 13, 17, 22, 28};
-constexpr double one_by_one = 3.5, narrow_box = 4;
-/// Diameters across a box from which on it is surely wide enough for sorted arrays at the start, too, when it
-/// is smaller.
-constexpr double surely_wide = 2.5;
+constexpr double one_by_one = 3.5;
 /// Sizes that differ make longer lists: the power of their spread that a sphere costs more.
 constexpr double cost_of_spread = 1, cost_of_spread_in_bed = 1.5;
 /// The same in boxes where they are wide: of what equal spheres take, and the power of their spread.
@@ -71,10 +67,9 @@ constexpr double bytes_a_sphere = 130, bytes_of_lists = 200;
 /// In blocks, in which the places are sorted.
 constexpr double bytes_in_blocks = 85, bytes_of_lists_in_blocks = 75;
 
-double dimension_factor(const Outlook& outlook, bool in_any_width = false) {
+double dimension_factor(const Outlook& outlook) {
   const int dimension = outlook.task.dimension;
-  const bool sorted = (dimension != 2 && dimension != 3) || in_any_width ||
-                      (!outlook.task.has_walls && outlook.width > narrow_box);
+  const bool sorted = (dimension != 2 && dimension != 3) || !outlook.task.has_walls;
   return by_dimension[static_cast<std::size_t>(dimension - 1)] * (sorted ? 1 : one_by_one) *
          std::pow(std::max(1.0, outlook.spheres / many), cost_of_many);
 }
@@ -95,7 +90,7 @@ double seconds_in_growing_box(const Relax& options, const Outlook& outlook) {
   const double method = options.method == RelaxMethod::fast ? 1 : reference_factor;
   return method * std::pow(options.beta / default_beta, power_of_beta) *
          (start > 1 ? share_if_loose * start : std::min(share_if_loose, start)) * outlook.spheres * decades *
-         decades * cycles * dimension_factor(outlook, wide) *
+         decades * cycles * dimension_factor(outlook) *
          (wide ? share_of_wide * std::pow(outlook.spread, cost_of_wide_spread)
                : std::pow(outlook.spread, cost_of_spread));
 }
@@ -183,8 +178,6 @@ std::vector<PlanItem> effects_of_relaxation(const Relax& options, const Outlook&
       items.erase(items.begin());  // it looks into cells
     else if (outlook.placed)
       items.front().if_needed = true;  // what hardly overlaps is only let grow
-    else if (!wide && outlook.task.dimension <= 3 && !outlook.task.has_walls && outlook.width < surely_wide)
-      items.front().if_needed = true;  // as the published loop does, which may take the place of the fast one
   }
   if (options.device == RelaxDevice::gpu) require_gpu_suits(options, outlook);
   if (options.exchange && options.method != RelaxMethod::fast)

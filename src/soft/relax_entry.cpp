@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "bernal/core/error.hpp"
+#include "jam/polish.hpp"
 #include "soft/ground.hpp"
 #include "soft/relax.hpp"
 #include "soft/relax_wide.hpp"

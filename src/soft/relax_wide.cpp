@@ -18,29 +18,33 @@
 namespace bernal {
 namespace {
 
-/// A last kind of no more than this share of the spheres comes with the one before it.
+// A kind is the spheres of one octave of radii.
+
+/// A last kind with at most this share of the spheres joins the kind before it.
 constexpr double least_of_kind = 0.02;
-/// Random places that are tried for one sphere.
+/// The number of random places that are tried for a sphere.
 constexpr int trials_a_sphere = 30;
-/// Of these the monitor is asked once.
+/// The monitor is asked once for so many spheres.
 constexpr std::size_t spheres_a_question = 4096;
-/// Cycles of sweeps after each kind, at most; and by what the mean overlap falls as long as they help.
+/// The most cycles of sweeps after each kind. They go on as long as the mean overlap falls below the share
+/// `helps` of its last value.
 constexpr int most_cycles_of_kind = 20;
 constexpr double helps = 0.97;
 /// Largest overlap ratio at which a kind counts as settled.
 constexpr double settled = 3e-3;
-/// Of the largest kind alone, so many starts are made to jam as make this many spheres, and the densest is
-/// kept: where few carry the volume, one start is denser than another by 0.02.
+/// If the largest kind has few spheres, they are packed several times, about `spheres_in_starts` spheres in
+/// all, and the densest packing is kept: packing fractions of few spheres differ by 0.02.
 constexpr std::size_t spheres_in_starts = 1000, most_starts_of_few = 20;
-/// Packing fraction that they start from.
+/// Packing fraction at the start of each.
 constexpr double start_of_few = 0.75;
-/// Few spheres have the sweeps of so many: they cost nothing.
+/// Fewer spheres have as many sweeps as this number: they cost nothing.
 constexpr std::size_t sweeps_grow_from = 1000;
-/// Cycles of a kind and of a start of few, as they usually are.
+/// The usual number of cycles of a kind, and of a packing of few spheres.
 constexpr double usual_cycles_of_kind = 4, usual_cycles_of_few = 60;
-/// Mean overlap when growths begin to be predicted.
+/// The usual mean overlap when growths begin to be predicted.
 constexpr double last_mean = 5e-4;
-/// Of that many cycles the largest overlap ratio decides; with a power of it before.
+/// After this number of cycles only the largest overlap ratio counts; before, its share grows with this
+/// power.
 constexpr double cycles_of_means = 200, power_of_cycles = 4;
 
 int sweeps_of_wide(const Relax& options, std::size_t spheres) {
@@ -62,7 +66,7 @@ double mean_overlap(const std::vector<float>& squeeze, const std::vector<double>
   return std::max(sum / static_cast<double>(radii.size()), weighted / volume);
 }
 
-/// Places for the spheres from `first` on between those before them.
+/// Puts the spheres from `first` on between those before them.
 template <int D>
 void place_between(Spheres<D>& spheres, std::size_t first, const Vector<D>& edges, Random& random,
                    const Monitor& monitor) {
@@ -92,7 +96,7 @@ void place_between(Spheres<D>& spheres, std::size_t first, const Vector<D>& edge
   }
 }
 
-/// Where the spheres of each kind end, sorted by radius, the largest first: octaves of sizes.
+/// Where each kind ends in the order of descending radii.
 std::vector<std::size_t> ends_of_kinds(const std::vector<double>& descending) {
   std::vector<std::size_t> ends;
   const std::size_t count = descending.size();
@@ -108,7 +112,7 @@ std::size_t starts_of(std::size_t few) {
   return std::clamp<std::size_t>(spheres_in_starts / few, 1, most_starts_of_few);
 }
 
-/// Tells a run how far the kinds are, by the cycles of sweeps of all that are there that are usual.
+/// Reports to a run how far the kinds are, in the usual number of cycles.
 class KindsTeller {
  public:
   KindsTeller(Work& work, const std::vector<std::size_t>& ends) : work_(work) {
@@ -118,11 +122,11 @@ class KindsTeller {
     for (const std::size_t end : ends) all_ += usual_cycles_of_kind * static_cast<double>(end);
   }
 
-  /// So many of the starts of few are over.
+  /// This number of the packings of few spheres is done.
   void started(std::size_t starts, std::size_t of_all, double largest) {
     tell(of_starts_ * static_cast<double>(starts) / static_cast<double>(of_all), largest);
   }
-  /// So many cycles of a kind, with whom so many are there.
+  /// This number of cycles of a kind is done; with the kind there are `spheres` in all.
   void cycled(int cycles, std::size_t spheres, double largest) {
     tell(before_ + std::min<double>(cycles, usual_cycles_of_kind) * static_cast<double>(spheres), largest);
   }
@@ -134,9 +138,9 @@ class KindsTeller {
   }
 
   Work& work_;
-  // Cycles, times the spheres that are swept.
+  // In cycles times spheres that are swept.
   double of_starts_ = 0, all_ = 0;
-  double before_ = 0;  // the kind that is settled
+  double before_ = 0;  // before the present kind
 };
 
 /// Sweeps in a box of fixed size until that no longer helps.
@@ -174,18 +178,16 @@ GrowingBox box_of_wide(const Relax& options, std::size_t spheres, double stop) {
           .last_overlap = last_mean};
 }
 
-/// The spheres push each other apart while the box grows.
-template <int D, class Stop, class OnGrowth>
-StageEnd grow_by_means(SoftPacking& packing, const std::vector<double>& radii, const GrowingBox& box,
-                       BoxGrowth& growth, Stop&& stop, OnGrowth&& on_growth) {
-  const auto overlap_of = [&](int cycle, double largest, const std::vector<float>& squeeze) {
+/// The overlap by which the box grows, as `grow_apart` asks for it. The radii outlive it.
+template <int D>
+auto overlap_by_means(const std::vector<double>& radii) {
+  return [&radii](int cycle, double largest, const std::vector<float>& squeeze) {
     const double share = std::min(1.0, std::pow(cycle / cycles_of_means, power_of_cycles));
     return std::min(largest, std::max(mean_overlap<D>(squeeze, radii), share * largest));
   };
-  return grow_apart<D>(packing, box, growth, stop, overlap_of, on_growth);
 }
 
-/// Few spheres, in the densest of some packings of them, spread out or squeezed into the box.
+/// Packs few spheres several times, and scales the densest packing to the box.
 template <int D>
 StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options,
                    Random& random, KindsTeller& teller) {
@@ -201,8 +203,9 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, cons
     place_between(start, 0, box, random, work.monitor);
     SoftPacking packing(start, box, soft_kernels().front(), true);
     BoxGrowth growth;
-    end = grow_by_means<D>(
-        packing, start.r, growing, growth, [&] { return work.monitor.stop(); }, [](double, double) {});
+    end = grow_apart<D>(
+        packing, growing, growth, [&] { return work.monitor.stop(); }, overlap_by_means<D>(start.r),
+        [](double, double) {});
     teller.started(n + 1, starts, growth.molr);
     work.effects["neighbour lists"] += packing.lists_built();
     work.effects["relaxation"].calls += sweeps_of(growth, growing, end);
@@ -261,19 +264,8 @@ StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Rel
                     double before) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
   const GrowingBox box = box_of_wide(options, spheres.size(), least_overlap(options, work.allowed_overlap));
-  BoxGrowth growth{.molr = overlap};
-  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
-  GrowthTeller teller(work, box, growth, before);
-  const auto stops = [&] {
-    teller.swept();
-    return work.stop();
-  };
-  const StageEnd end = grow_by_means<D>(packing, spheres.r, box, growth, stops,
-                                        [&](double factor, double) { teller.grown(factor); });
-  work.effects["neighbour lists"] += packing.lists_built();
-  work.effects["relaxation"].calls += sweeps_of(growth, box, end);
-  packing.write_to(spheres, edges);
-  return end;
+  return let_box_grow<D>(packing, spheres, edges, work, box, {.molr = overlap}, before,
+                         overlap_by_means<D>(spheres.r));
 }
 
 #define BERNAL_INSTANTIATE(D)                                                               \

@@ -11,8 +11,8 @@
 
 namespace bernal {
 
-/// Memory for many short arrays that are made anew again and again, all at a time: in large pieces, which
-/// stay when all arrays are given up. Any thread. Cost: a lock an array, and a copy.
+/// Memory for many short arrays that are all given up at the same time and made anew. It is taken from the
+/// system in large pieces and kept. Threads may share it. Cost: a lock and a copy for each array.
 template <class T>
 class RowArena {
  public:

@@ -10,21 +10,22 @@ namespace bernal {
 
 /// How a bed is laid.
 struct Laying {
-  double packing_fraction;  ///< of the spheres as they begin to fall, at most
-  int taps = 0;             ///< before, see `tap`
+  double packing_fraction;  ///< the largest of the spheres before they fall
+  int taps = 0;             ///< before they fall, see `tap`
   double first_tap = bernal::first_tap;
-  double friction = 0;     ///< the angle, in degrees, up to which it holds a sphere that rolls
-  bool is_aimed = false;   ///< at a porosity, so that what else would fit is left out
-  bool finds_room = true;  ///< set by who lays it: whether they found it at that density
+  double friction = 0;     ///< the angle, in degrees, up to which friction holds a sphere that rolls
+  bool is_aimed = false;   ///< whether a porosity is the aim: then no other spheres are added that would fit
+  bool finds_room = true;  ///< result: whether the spheres found room at that packing fraction
 };
 
-/// Lays a bed, and again from what stood there before as long as it is not as porous as the target asks for:
-/// denser or looser to begin with; where relaxation packs them no denser, tapped; where they would settle
-/// denser however loose they begin, with friction of the least angle that holds them. The attempt that came
-/// nearest is kept. Says in `Work::account` how porous the bed is and what was the aim, and in `Work::missed`
-/// where it was missed by more than 0.005. Of a bed lower than four diameters no law tells the aim.
+/// Lays a bed with `lay`, and lays it again, from what stood there before, until it is as porous as the
+/// target asks for. The attempts begin at another packing fraction. If relaxation packs the spheres no
+/// denser, they are tapped; if they settle too densely however loose they begin, friction with the least
+/// sufficient angle holds them. The nearest attempt is kept. `Work::account` then says the porosity and the
+/// aim, and `Work::missed` that the aim was missed by more than 0.005. No law gives an aim for a bed lower
+/// than four diameters.
 ///
-/// Poured: laid once, at `poured`. Cost: that of an attempt, once to some ten times.
+/// A poured bed is laid once, at `poured`. Cost: one to some ten attempts.
 StageEnd settle_as_dense(Work& work, const BedTarget& target, const Heights& heights, const BedTop& top,
                          double poured, const std::function<StageEnd(Laying&)>& lay);
 

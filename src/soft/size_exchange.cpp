@@ -9,13 +9,13 @@
 namespace bernal {
 namespace {
 
-/// Pressures count up to so many times their mean: those of a few spheres in a tight corner are far beyond.
+/// The largest excess of a pressure over the mean that counts: a few spheres in a tight corner have far more.
 constexpr float most_excess = 3;
 constexpr double first_step = 0.012, last_step = 0.1 * first_step, share_of_long_steps = 0.3;
 constexpr int bits_a_pass = 11, passes = 3;
 constexpr double most_gain = 0.07, most_gain_at_walls = 0.105, spread_of_gain = 0.045;
 
-/// Mean square of ln r from its mean in a group, each ending where the next size is out of reach.
+/// The variance of ln r within groups; a group ends where the next size is out of reach.
 double variance_of_groups(const std::vector<double>& radii, const std::vector<std::uint32_t>& ascending) {
   double sum = 0, mean = 0, squares = 0, members = 0;  // of the present group: Welford
   for (std::size_t k = 0; k < ascending.size(); ++k) {
@@ -31,7 +31,7 @@ double variance_of_groups(const std::vector<double>& radii, const std::vector<st
   return radii.empty() ? 0 : (sum + squares) / static_cast<double>(radii.size());
 }
 
-/// Unsigned numbers in the order of these.
+/// Maps floats to unsigned numbers in the same order.
 std::uint32_t ordered(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
@@ -49,7 +49,7 @@ SizeExchange::SizeExchange(const std::vector<double>& radii, int dimension) : as
   spread_ = std::sqrt(variance_of_groups(radii, ascending_));
 }
 
-/// By the first, in the order of the spheres where these are equal: a radix sort.
+/// By radius, and by sphere where radii are equal: a radix sort.
 void SizeExchange::sort_wishes() {
   constexpr std::uint32_t mask = (1u << bits_a_pass) - 1;
   sorted_.resize(wishes_.size());

@@ -12,16 +12,16 @@
 namespace bernal {
 namespace {
 
-/// What spheres fill of a block that is full.
+/// Packing fraction of a full block.
 constexpr double full = 0.64;
-/// Of the width of halos. From one on halos are only in blocks that touch; a narrow one has many more spheres
-/// in its halo than of its own.
+/// The least width of a block, in widths of the halo. With at least one, the halo lies in adjacent blocks
+/// only; a narrow block has many more spheres in its halo than of its own.
 constexpr double narrowest_block = 2;
-/// Empty ones cost time too.
+/// Empty blocks cost time too.
 constexpr double most_blocks_a_sphere = 1.0 / 64;
 constexpr std::size_t directions = 27, here = 13;
 
-/// Along each axis: an even number, or one.
+/// The number of blocks along each axis: even, or one.
 std::array<int, 3> blocks_across(double size, std::size_t spheres, const std::array<double, 3>& edges,
                                  const SoftSizes& sizes, float skin) {
   const double volume = size * sizes.volume_a_sphere / full;
@@ -69,8 +69,8 @@ void SoftBlocks::cut(std::size_t spheres, const std::array<double, 3>& edges, co
   }
 }
 
-/// Parts of the axes whose ends are the same to the unit for every sphere: n · (x / 2^32), rounded down, is
-/// the part that x is in.
+/// The region of a block. Its ends agree exactly with the rule that x is in part n · (x / 2^32), rounded
+/// down.
 SoftRegion SoftBlocks::region_of(std::size_t block) const {
   SoftRegion region;
   for (std::size_t k = 0, b = block; k < 3; b /= static_cast<std::size_t>(across_[k++])) {
@@ -84,7 +84,7 @@ SoftRegion SoftBlocks::region_of(std::size_t block) const {
   return region;
 }
 
-/// Where the spheres of each block are, in their order; gaps are left out.
+/// Lists the spheres of each block, in their order, without gaps.
 void SoftBlocks::sort_into_blocks(const std::vector<SoftSphere>& spheres) {
   const auto block_of = [&](std::size_t p) {
     const SoftSphere& s = spheres[p];
@@ -131,7 +131,7 @@ bool SoftBlocks::build(std::vector<SoftSphere>& spheres, std::vector<std::uint32
   return fits;
 }
 
-/// Within each block; those that rest come last. Returns whether none has too many places.
+/// The order within each block; resting spheres come last. Returns whether no block has too many places.
 bool SoftBlocks::find_orders(const std::vector<SoftSphere>& spheres, const std::vector<std::uint32_t>& ids,
                              std::uint32_t movers) {
   drafts_.resize(blocks_.size());
@@ -167,7 +167,7 @@ bool SoftBlocks::find_orders(const std::vector<SoftSphere>& spheres, const std::
   return fit;
 }
 
-/// By direction: minus one, none or one along each axis, the first axis the fastest.
+/// A direction is -1, 0 or 1 along each axis, the first axis the fastest.
 void SoftBlocks::find_exports(std::size_t block, const std::vector<SoftSphere>& spheres, Scratch& scratch) {
   const SoftRegion region = region_of(block);
   const Block& mine = blocks_[block];
@@ -258,8 +258,8 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
   return true;
 }
 
-/// Leaves out of the halo those that are nobody's neighbours: a third of equal spheres, and most where it is
-/// as wide as a few large ones need it. `name_of` becomes the place in a visit of each one that remains.
+/// Removes spheres that are nobody's neighbours from the halo: a third of equal spheres, and most of them if
+/// a few large spheres make it wide. `name_of` becomes the place in a visit of each sphere that remains.
 void SoftBlocks::name_neighbors(std::size_t own, Scratch& scratch) {
   std::vector<std::uint16_t>& name_of = scratch.name_of;
   name_of.assign(scratch.spheres.size(), 0);

@@ -8,25 +8,19 @@
 
 namespace bernal {
 
-/// Overlapping spheres that push each other apart in a periodic box, by the engine that is faster there:
-/// `SoftPacking` in a box of up to three dimensions that is wide enough for it and has no walls, and
-/// `NeighborRelaxation` in any other. Here alone it is chosen. What the calls do stands there.
+/// Overlapping spheres that push each other apart in a periodic box of 1 to 8 dimensions. The engine is
+/// `SoftPacking` in up to three dimensions without walls, and `NeighborRelaxation` in more dimensions or
+/// between walls. Their headers say what the calls do.
 template <int D>
 class SoftEngine {
  public:
-  /// Centres in [0, edge). The box may become smaller than it is by the factor `room` later on. Axes with
-  /// `walls` (empty: none) keep centres `share` times their radius away from both ends. `by_octaves`: it is
-  /// `SoftPacking` that way, in two or three dimensions without walls.
-  SoftEngine(const Spheres<D>& spheres, const Vector<D>& edges, double room = 1,
-             const std::vector<bool>& walls = {}, double share = 1, bool by_octaves = false)
-      : engine_(make(spheres, edges, by_octaves || (walls.empty() && is_wide(spheres, edges, room)),
-                     by_octaves)) {
+  /// Centres in [0, edge). Along axes with `walls` (empty: none) centres keep `share` times their radius away
+  /// from both ends. `by_octaves` as of `SoftLists`; only `SoftPacking` knows it. Precondition: every edge is
+  /// at least the largest diameter.
+  SoftEngine(const Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls = {},
+             double share = 1, bool by_octaves = false)
+      : engine_(make(spheres, edges, walls.empty(), by_octaves)) {
     if (!walls.empty()) std::get<NeighborRelaxation<D>>(engine_).keep_between_walls(walls, share);
-  }
-
-  /// Whether the box is wide enough for the sorted arrays of `SoftPacking`, whose lists know sizes.
-  static bool is_wide(const Spheres<D>& spheres, const Vector<D>& edges, double room = 1) {
-    return D <= 3 && edges.minCoeff() >= room * SoftPacking::smallest_edge(spheres.r);
   }
 
   void wear_lists(double wear) {
@@ -68,9 +62,9 @@ class SoftEngine {
   using Engine = std::conditional_t<D <= 3, std::variant<NeighborRelaxation<D>, SoftPacking>,
                                     std::variant<NeighborRelaxation<D>>>;
 
-  static Engine make(const Spheres<D>& spheres, const Vector<D>& edges, bool sorted, bool by_octaves) {
+  static Engine make(const Spheres<D>& spheres, const Vector<D>& edges, bool is_open, bool by_octaves) {
     if constexpr (D <= 3) {
-      if (sorted)
+      if (is_open)
         return Engine(std::in_place_type<SoftPacking>, spheres, edges, soft_kernels().front(), by_octaves);
     }
     return Engine(std::in_place_type<NeighborRelaxation<D>>, spheres, edges);

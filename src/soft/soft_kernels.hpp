@@ -7,10 +7,9 @@
 
 namespace bernal {
 
-/// A sphere of the fast relaxation. Its place on axis k is x[k] in units of edge / 2^32, so that differences
-/// wrap round to the minimum image by themselves and a growing box leaves the coordinates as they are.
-/// Resolution: 2^-33 of the edge, 1e-8 radii in a box of 10,000 spheres. A radius of NaN stands for no
-/// sphere: it touches nothing.
+/// A sphere of the fast relaxation. Its coordinate on axis k is x[k] in units of edge / 2^32. So differences
+/// wrap round to the nearest image, and coordinates stay when the box grows. Resolution: 2^-33 of the edge,
+/// 1e-8 radii in a box of 10,000 spheres. A radius of NaN means that there is no sphere: it touches nothing.
 struct alignas(16) SoftSphere {
   using ArchivedAsBytes = void;
   std::int32_t x[3];
@@ -19,24 +18,24 @@ struct alignas(16) SoftSphere {
 
 inline constexpr SoftSphere no_sphere = {{0, 0, 0}, std::numeric_limits<float>::quiet_NaN()};
 
-/// The short way from one place of a sphere to another, in units of the coordinates.
+/// The difference of two coordinates, to the nearest image, in units of the coordinates.
 inline std::int32_t steps_between(const SoftSphere& from, const SoftSphere& to, std::size_t k) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(to.x[k]) -
                                    static_cast<std::uint32_t>(from.x[k]));
 }
-/// These units, in a box of those edges.
+/// These units as lengths, in a box with these edges.
 inline std::array<float, 3> scale_of(const std::array<double, 3>& edges) {
   std::array<float, 3> scale;
   for (std::size_t k = 0; k < 3; ++k) scale[k] = static_cast<float>(edges[k] * 0x1p-32);
   return scale;
 }
 
-/// So many spheres that do not touch each other are moved together.
+/// The number of spheres, none of them neighbours of each other, that move together: a group.
 inline constexpr std::size_t lanes = 16;
 
 class SoftWalls;
 
-/// The neighbours of `lanes` spheres: `rows` rows of one place for each of them.
+/// The neighbours of a group: `rows` rows, each with one place for each of its `lanes` spheres.
 template <class Index>
 struct NeighborRows {
   const Index* first;
@@ -48,16 +47,19 @@ struct SweepTask {
   SoftSphere* spheres;
   std::size_t first_group;
   std::array<float, 3> scale;  ///< edge / 2^32 on each axis
-  /// Where all spheres and all edges are alike and there are no walls: the diameter, in edges / 2^32; else 0.
+  /// The diameter in edges / 2^32, if all spheres and all edges are equal and there are no walls; else 0.
   float diameter;
   float omega;       ///< over-relaxation: the step is min(omega / contacts, 1) times the sum of overlaps
   SoftWalls* walls;  ///< of a container; null in a periodic box
-  bool measure;      ///< the largest overlap ratio, and what has to be filled of these:
-  float* squeeze;  ///< receives, of lane l of group g at g * lanes + l, the sum of its squared overlap ratios
-  float* force;    ///< receives, with `squeeze`, r Σ w (ri + rj - d); both are null where nobody asks
+  bool measure;      ///< whether to find the largest overlap ratio and to fill the next two, if not null
+  float* squeeze;    ///< at g * lanes + l, for lane l of group g: the sum of its squared overlap ratios
+  float* force;      ///< there, r Σ w (ri + rj - d); null if and only if `squeeze` is
+  /// Axes along which the box is shorter than four of the largest radii, one bit each, the first the lowest:
+  /// there two spheres may overlap in two images.
+  unsigned narrow_axes = 0;
 };
 
-/// A part of the box, cut out of it along some axes, in units of the coordinates of spheres; or all of it.
+/// The box, or a part of it that is cut out along some axes, in units of the coordinates.
 struct SoftRegion {
   static constexpr std::uint64_t all_round = std::uint64_t{1} << 32;
   std::array<std::uint32_t, 3> origin{};
@@ -70,7 +72,7 @@ struct SoftRegion {
   }
 };
 
-/// So many equal parts of an axis of a region.
+/// An axis of a region in equal parts.
 class SoftParts {
  public:
   SoftParts(const SoftRegion& region, std::size_t axis, int parts)
@@ -79,7 +81,7 @@ class SoftParts {
         parts_(parts),
         parts_a_unit_(parts / static_cast<double>(region.extent[axis])) {}
 
-  /// The one that the sphere's centre is in: the last for what is beyond.
+  /// The part that the sphere's centre is in; the last part, if the centre is beyond the region.
   int at(const SoftSphere& s) const {
     const double at = (static_cast<std::uint32_t>(s.x[axis_]) - origin_) * parts_a_unit_;
     return at < parts_ ? static_cast<int>(at) : parts_ - 1;
@@ -97,70 +99,74 @@ class SoftParts {
 struct SoftLevel {
   float largest;
   std::array<int, 3> cells;
-  std::array<double, 3> cells_a_unit;    ///< of the coordinates
-  std::array<double, 3> cells_a_length;  ///< in that of the radii
+  std::array<double, 3> cells_a_unit;    ///< cells in a unit of the coordinates
+  std::array<double, 3> cells_a_length;  ///< cells in a unit of the radii
   std::size_t first_cell;                ///< in `SearchTask::start`
   std::size_t spheres;
 };
 
 struct SearchTask {
-  SoftRegion region;  ///< around all that may be searched for; the cells of a level share it equally
+  SoftRegion region;  ///< around all spheres; each level divides it into equal cells
   std::array<float, 3> scale;
-  float skin;  ///< spheres are neighbours where the gap between them is below twice this
+  float skin;  ///< spheres are neighbours if the gap between them is below twice this
   std::span<const SoftLevel> levels;
-  const std::uint32_t* start;  ///< of each cell in what follows; one more than there are cells
-  /// Spheres by level and cell; followed by `lanes` more that are read but not used.
+  const std::uint32_t* start;  ///< where each cell begins in the next arrays; one entry more than cells
+  /// Spheres by level and cell. `lanes` more entries, which are read but not used, follow.
   const std::int32_t *x, *y, *z;
   const float* r;
-  const std::uint32_t* places;  ///< of these in the sweep order
+  const std::uint32_t* places;  ///< their places in the sweep order
 };
 
-/// Some spheres that lie close together, whose neighbours are searched for among the same others.
+/// Some spheres that lie close together and share one set of candidates.
 struct SearchPart {
-  std::array<double, 3> low, high;  ///< around their centres, from the origin of the region, in its units
-  float reach;                      ///< the largest of their radii, and twice the skin
-  SoftSphere origin;                ///< one of them, which the others are seen from
+  std::array<double, 3> low, high;  ///< bounds of their centres, from the origin of the region, in its units
+  float reach;                      ///< the largest of their radii plus twice the skin
+  SoftSphere origin;                ///< one of them; coordinates of candidates are relative to it
 };
 
-/// Spheres that may be neighbours of those of a part, from its origin on, in the unit of the radii. There is
-/// room for all spheres of the task and twice `lanes` more.
+/// Spheres that may be neighbours of those of a part. Coordinates are relative to its origin, in the unit of
+/// the radii. Each array has room for all spheres of the task and 2 `lanes` more.
 struct Candidates {
   float *x, *y, *z, *r;
   std::uint32_t* places;
 };
 
 /// The inner loops of the fast relaxation, compiled for several instruction sets. All do the same operations
-/// on the same numbers in the same order, one correctly rounded operation at a time: the same bits.
-/// Where `SweepTask::diameter` is given and nothing is measured, a sweep has a sixth of its operations less:
-/// it needs no radii, and one unit for all axes.
+/// on the same numbers in the same order, each correctly rounded, so that the results are the same bits. If
+/// `SweepTask::diameter` is given and nothing is measured, a sweep has a sixth fewer operations: it needs no
+/// radii, and one unit for all axes.
+///
+/// A sphere meets the nearest image of each neighbour. In a narrow box it also meets the images on the other
+/// side of the box along one or more of the `narrow_axes`. If every edge is at least the largest diameter, it
+/// can overlap no other image, because all others are at least an edge away; and it can overlap these only
+/// where it overlaps the nearest.
 struct SoftKernels {
   std::string_view name;
 
   /// Moves the groups [begin, end) one after the other: each sphere by min(omega / n, 1) Σ w (ri + rj - d) u
-  /// over its overlapping neighbours, u being the unit vector away from the neighbour, w = 2 rj / (ri + rj)
-  /// and n = Σ w: of a pair the larger one gives way less, so that a large sphere among many small ones is
-  /// moved by its large neighbours (Zhao, Li & Liu 2007, equations 3 and 4, for omega = 1 and equal radii). A
-  /// wall counts as a neighbour with w = 1. Precondition: no two spheres of a group are neighbours. Cost:
-  /// about 1 ns a neighbour. `groups` begins with
-  /// group `first_group`. Where it is to measure, returns the largest overlap ratio (ri + rj - d) / (ri + rj)
-  /// that was met.
+  /// over its overlapping neighbours, where u is the unit vector away from the neighbour, w = 2 rj / (ri +
+  /// rj) and n = Σ w. The larger sphere of a pair gives way less, so that its large neighbours, and not many
+  /// small ones, move a large sphere. With omega = 1 and equal radii these are equations 3 and 4 of Zhao, Li
+  /// & Liu (2007). A wall counts as a neighbour with w = 1. `groups` begins with group `first_group`. Returns
+  /// the largest overlap ratio (ri + rj - d) / (ri + rj) that it met, if it measures. Precondition: no two
+  /// spheres of a group are neighbours. Cost: about 1 ns a neighbour.
   template <class Index>
   using Sweep = float (*)(const SweepTask&, const NeighborRows<Index>* groups, std::size_t begin,
                           std::size_t end);
   Sweep<std::uint32_t> sweep;
-  Sweep<std::uint16_t> sweep_short;  ///< where there are no more than 2^16 places
-  /// Finds the candidates of a part, by level and cell, and puts `lanes` behind them that are nobody's
-  /// neighbours; returns how many they are. Precondition: along every axis the part is no longer than
-  /// half of the box less the farthest that neighbours may be apart. Cost: some 100 ns.
+  Sweep<std::uint16_t> sweep_short;  ///< the same for at most 2^16 places
+  /// Finds the candidates of a part, by level and cell, and returns their number. `lanes` entries behind them
+  /// become neighbours of nobody. Precondition: along every axis the part is one point, or no longer than
+  /// half of the box less the largest distance of neighbours. Cost: some 100 ns.
   std::size_t (*gather)(const SearchTask&, const SearchPart&, const Candidates& to);
-  /// Writes the places of all neighbours of a sphere of the part but itself, `self`, among so many candidates
-  /// to `out` and returns their end; up to `lanes` more entries are scribbled over. Cost: about 0.2 ns a
-  /// candidate.
+  /// Writes the places of all neighbours of a sphere of the part to `out`, and returns their end. They are
+  /// found among the first `count` candidates; `self` is the sphere's own place. It may write `lanes` entries
+  /// more. Cost: about 0.2 ns a candidate.
   std::uint32_t* (*search)(const SearchTask&, const SearchPart&, const Candidates& among, std::size_t count,
                            const SoftSphere&, std::uint32_t self, std::uint32_t* out);
 };
 
-/// Those that this processor can run, the fastest first; the last is for every x86-64.
+/// The kernels that this processor can run, the fastest first. The last run on every x86-64.
 std::span<const SoftKernels> soft_kernels();
 
 }  // namespace bernal

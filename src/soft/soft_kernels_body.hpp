@@ -150,11 +150,22 @@ BERNAL_INLINE Floats step_of(const SweepTask& task, Floats contacts) {
   return step < 1.0f ? step : all(1);
 }
 
-template <bool measure, class Index>
+/// The distance along an axis to the image on the other side of the box, from that to the nearest.
+BERNAL_INLINE Floats across(Floats d, Floats edge) {
+  const Ints sign = Ints(d) & std::numeric_limits<int>::min();
+  return d - Floats(Ints(edge) | sign);
+}
+
+template <bool measure, bool narrow, class Index>
 float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin,
                    std::size_t end) {
   const Floats scale_x = all(task.scale[0]), scale_y = all(task.scale[1]), scale_z = all(task.scale[2]);
   const Floats inverse_x = 1 / scale_x, inverse_y = 1 / scale_y, inverse_z = 1 / scale_z;
+  const Floats edge_x = scale_x * 0x1p32f, edge_y = scale_y * 0x1p32f, edge_z = scale_z * 0x1p32f;
+  float shortest = std::numeric_limits<float>::max();
+  for (std::size_t k = 0; k < 3; ++k)
+    if (task.narrow_axes >> k & 1) shortest = std::min(shortest, task.scale[k] * 0x1p32f);
+  const Floats half = all(0.5f * shortest);
   Floats worst{};
   WallPush at_wall;
   for (std::size_t g = begin; g < end; ++g) {
@@ -181,25 +192,36 @@ float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std
       }
       for (const Index* places = rows + first; places < rows_end; places += lanes) {
         const Columns it = load([&](int k) BERNAL_INLINE_LAMBDA { return task.spheres + places[k]; });
+        const Floats reach = me.r + it.r;
+        const auto meet = [&](Floats dx, Floats dy, Floats dz) BERNAL_INLINE_LAMBDA {
+          const Floats d = root((dx * dx + dy * dy) + dz * dz);
+          const Ints overlap = (d < reach) & (d > 0.0f);
+          const Floats depth = reach - d;
+          const Floats shared = (it.r + it.r) / (reach * d);
+          const Floats weight = where(overlap, shared * d);
+          const Floats push = where(overlap, shared * depth);
+          sum_x += push * dx;
+          sum_y += push * dy;
+          sum_z += push * dz;
+          contacts += weight;
+          if constexpr (measure) {
+            const Floats ratio = where(overlap, depth / reach);
+            worst = ratio > worst ? ratio : worst;
+            squares += ratio * ratio;
+            force += where(overlap, weight * depth);
+          }
+          return overlap;
+        };
         const Floats dx = to_floats(wrapped_difference(me.x, it.x)) * scale_x;
         const Floats dy = to_floats(wrapped_difference(me.y, it.y)) * scale_y;
         const Floats dz = to_floats(wrapped_difference(me.z, it.z)) * scale_z;
-        const Floats reach = me.r + it.r;
-        const Floats d = root((dx * dx + dy * dy) + dz * dz);
-        const Ints overlap = (d < reach) & (d > 0.0f);
-        const Floats depth = reach - d;
-        const Floats shared = (it.r + it.r) / (reach * d);
-        const Floats weight = where(overlap, shared * d);
-        const Floats push = where(overlap, shared * depth);
-        sum_x += push * dx;
-        sum_y += push * dy;
-        sum_z += push * dz;
-        contacts += weight;
-        if constexpr (measure) {
-          const Floats ratio = where(overlap, depth / reach);
-          worst = ratio > worst ? ratio : worst;
-          squares += ratio * ratio;
-          force += where(overlap, weight * depth);
+        const Ints overlap = meet(dx, dy, dz);
+        if constexpr (narrow) {
+          if (mask_of(overlap & (reach > half)) == 0) continue;
+          for (unsigned sides = 1; sides < 8; ++sides)
+            if ((sides & ~task.narrow_axes) == 0)
+              meet(sides & 1 ? across(dx, edge_x) : dx, sides & 2 ? across(dy, edge_y) : dy,
+                   sides & 4 ? across(dz, edge_z) : dz);
         }
       }
       const Floats step = step_of(task, contacts);
@@ -255,8 +277,9 @@ void sweep_alike(const SweepTask& task, const NeighborRows<Index>* groups, std::
 
 template <class Index>
 float sweep(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin, std::size_t end) {
-  if (task.measure) return sweep_groups<true>(task, groups, begin, end);
-  if (task.diameter == 0) return sweep_groups<false>(task, groups, begin, end);
+  if (task.narrow_axes != 0) return sweep_groups<true, true>(task, groups, begin, end);
+  if (task.measure) return sweep_groups<true, false>(task, groups, begin, end);
+  if (task.diameter == 0) return sweep_groups<false, false>(task, groups, begin, end);
   sweep_alike(task, groups, begin, end);
   return 0;
 }

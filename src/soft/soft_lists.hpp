@@ -12,7 +12,8 @@
 
 namespace bernal {
 
-/// What each sphere of a box may meet until it has moved by the skin, for sweeps in the `SweepOrder` of all.
+/// The neighbours that each sphere of a box may meet until it has moved by the skin, and sweeps over all
+/// spheres in one `SweepOrder`.
 class SoftLists {
  public:
   /// With fewer spheres a second thread does not pay.
@@ -21,19 +22,19 @@ class SoftLists {
   explicit SoftLists(const SoftKernels& kernels, bool by_octaves = false)
       : kernels_(kernels), by_octaves_(by_octaves) {}
 
-  /// Sorts the spheres anew and finds their neighbours. `spheres` and `ids` are in sweep order, with gaps
-  /// where the radius is NaN, before and after. Of several images of a sphere that are neighbours of one, as
-  /// there may be where an edge is less than 4 (largest radius + skin), the nearest counts. `skin` is in the
-  /// unit of the radii. Parallel. Cost: about 0.2 µs a sphere on one core.
+  /// Sorts the spheres and finds their neighbours. Before and after, `spheres` and `ids` are in sweep order,
+  /// with gaps where the radius is NaN. A sphere is listed once, even if several images of it are near, which
+  /// happens if an edge is shorter than 4 (largest radius + skin). `skin` is in the unit of the radii.
+  /// Parallel. Cost: about 0.2 µs a sphere on one core.
   ///
-  /// Those whose id is `movers` or larger rest: they stand behind the last group, where others find them as
-  /// neighbours and no sweep comes. Precondition: some move.
+  /// Spheres whose id is `movers` or larger rest: they stand behind the last group, where others find them as
+  /// neighbours and no sweep moves them. Precondition: at least one sphere moves.
   void build(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& ids,
              const std::array<double, 3>& edges, const SoftSizes& sizes, float skin,
              std::uint32_t movers = nobody);
 
-  /// Every sphere once, chains of one colour at the same time where `in_threads`. Returns what
-  /// `SoftKernels::sweep` does.
+  /// Moves every sphere once; with `in_threads` chains of one colour at the same time. Returns what
+  /// `SoftKernels::sweep` returns.
   float sweep(const SweepTask& task, bool in_threads) const;
 
   const NeighborRows<std::uint32_t>* groups() const { return groups_.data(); }
@@ -49,8 +50,8 @@ class SoftLists {
   RegionCells cells_;
   std::vector<NeighborRows<std::uint32_t>> groups_;
   std::vector<std::vector<std::uint32_t>> rows_;  // a block for some groups
-  // Of the building alone. Kept: to get their memory from the system each time took 10^5 spheres 60 ns each,
-  // and the rest of building 160.
+  // Only `build` uses these. They keep their memory: to get it from the system each time took 60 ns a sphere
+  // with 10^5 spheres, and the rest of `build` 160.
   struct Part {
     std::vector<SoftSphere> spheres;
     std::vector<std::uint32_t> ids;

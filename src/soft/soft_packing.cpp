@@ -12,7 +12,7 @@
 namespace bernal {
 namespace {
 
-/// In mean radii. Larger ones make lists that last longer and are longer; from 0.3 to 0.5 it makes no
+/// In mean radii. With a larger skin lists last longer and are longer; from 0.3 to 0.5 it makes no
 /// difference.
 constexpr double relative_skin = 0.4;
 
@@ -21,6 +21,11 @@ std::vector<float> as_floats(const std::vector<double>& values, double factor = 
   floats.reserve(values.size());
   for (const double v : values) floats.push_back(static_cast<float>(factor * v));
   return floats;
+}
+
+/// An edge so long that no two images of a sphere are neighbours of one.
+double surely_wide(const std::vector<double>& radii) {
+  return 4.001 * (std::ranges::max(radii) + SoftPacking::usual_skin(radii));
 }
 
 }  // namespace
@@ -43,7 +48,7 @@ SoftPacking::SoftPacking(const std::vector<double>& radii, double most, int dime
       sites_(radii.size()),
       id_of_site_(radii.size()),
       radii_(as_floats(radii)) {
-  edges_.fill(smallest_edge(radii));  // of axes that are not there: all coordinates are 0
+  edges_.fill(surely_wide(radii));  // of axes that are not there: all coordinates are 0
   std::iota(sites_.begin(), sites_.end(), 0u);
   id_of_site_ = sites_;
   for (std::size_t i = 0; i < count_; ++i) spheres_[i].r = radii_[i];
@@ -60,9 +65,9 @@ SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, cons
 
 SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels)
     : SoftPacking(spheres.r, most_swelling, 3, kernels, false) {
-  // Centres stay inside the bounds, so that images are a margin of this width apart; but for those along an
-  // axis that repeats itself, which are meant.
-  const double margin = most_swelling * smallest_edge(spheres.r);
+  // Centres stay inside the bounds, so that images are apart by a margin of this width; along an axis that
+  // repeats itself there is none.
+  const double margin = most_swelling * surely_wide(spheres.r);
   const Bounds<3> bounds = container.bounds();
   const Boundary<3>& boundary = container.boundary();
   corner_ = bounds.lower - Vector<3>::Constant(0.5 * margin);
@@ -84,12 +89,18 @@ double SoftPacking::usual_skin(const std::vector<double>& radii) {
   return relative_skin * std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
 }
 
-double SoftPacking::smallest_edge(const std::vector<double>& radii) {
-  return 4.001 * (std::ranges::max(radii) + usual_skin(radii));
-}
-
 double SoftPacking::farthest_neighbor(double largest, double mean) {
   return 2 * (largest + relative_skin * mean);
+}
+
+/// As `SweepTask::narrow_axes`.
+unsigned SoftPacking::narrow_axes() const {
+  constexpr double rounding = 1e-6;
+  const double least = 4 * (1 + rounding) * static_cast<double>(sizes_.largest);
+  unsigned axes = 0;
+  for (int k = 0; k < dimension_; ++k)
+    if (edges_[static_cast<std::size_t>(k)] < least) axes |= 1u << k;
+  return axes;
 }
 
 /// In edges / 2^32, where all spheres and edges are alike and there are no walls; else 0.
@@ -112,15 +123,14 @@ float SoftPacking::move_all(float omega, bool measure, bool each) {
                        .walls = walls_.get(),
                        .measure = measure,
                        .squeeze = each ? squeeze_.data() : nullptr,
-                       .force = each ? force_.data() : nullptr};
+                       .force = each ? force_.data() : nullptr,
+                       .narrow_axes = narrow_axes()};
   if (walls_) walls_->look_anew(measure);
   life_.swept();
   if (in_blocks_) return blocks_->sweep(task);
   const bool in_threads = count_ >= SoftLists::worth_threads;
   if (walls_ && !in_threads) walls_->push_ahead(spheres_);
-  const float near = lists_.sweep(task, in_threads);
-  if (far_images_.empty()) return near;
-  return std::max(near, far_images_.push(spheres_, edges_, omega, task.squeeze, task.force));
+  return lists_.sweep(task, in_threads);
 }
 
 void SoftPacking::sweep(float omega) { move_all(omega, false, false); }
@@ -182,7 +192,7 @@ void SoftPacking::exchange(const std::vector<std::uint32_t>& to) {
   life_.radii_grew(most);
 }
 
-/// Of very many parts some tell.
+/// Unless it is asked for all, it looks at some of very many parts.
 FarthestMoves SoftPacking::farthest_moves(bool of_all) const {
   constexpr std::size_t part = FarthestMoves::part, enough_parts = 64;
   const std::array<float, 3> scale = scale_of(edges_);
@@ -214,7 +224,7 @@ void SoftPacking::remember_places() {
   });
 }
 
-/// In the box of that time; what is in `spare` is lost.
+/// In the box `edges_then_`. `spare` is scratch memory.
 void SoftPacking::build_lists(std::vector<SoftSphere>& spheres, std::vector<std::uint32_t>& sites,
                               std::vector<SoftSphere>& spare) {
   in_blocks_ = !by_octaves_ && SoftBlocks::suit(count_, edges_then_, sizes_, life_.skin());
@@ -223,7 +233,6 @@ void SoftPacking::build_lists(std::vector<SoftSphere>& spheres, std::vector<std:
     in_blocks_ = blocks_->build(spheres, sites, spare, count_, edges_then_, sizes_, life_.skin(), movers_);
   }
   if (!in_blocks_) lists_.build(spheres, sites, edges_then_, sizes_, life_.skin(), movers_);
-  if (!walls_) far_images_.build(spheres, edges_then_, dimension_, wear_then_ * life_.skin());
 }
 
 void SoftPacking::keep_lists_valid(bool for_all) {
@@ -235,7 +244,6 @@ void SoftPacking::keep_lists_valid(bool for_all) {
         const EffectTimer timer(lists_built_);
         sites_then_ = sites_;
         edges_then_ = edges_;
-        wear_then_ = life_.wear();
         build_lists(spheres_, sites_, built_at_);
         if (walls_) walls_->build(spheres_, sites_, life_.skin());
         remember_places();
@@ -249,7 +257,7 @@ void SoftPacking::archive(Archive& a) {
 }
 
 void SoftPacking::build_again(Archive& a) {
-  a(built_at_, sites_then_, edges_then_, wear_then_);
+  a(built_at_, sites_then_, edges_then_);
   if (!a.reads() || life_.is_over()) return;  // they are built before they are used
   std::vector<SoftSphere> at_site(count_), spheres, spare;
   for (std::size_t p = 0; p < built_at_.size(); ++p)

@@ -8,7 +8,6 @@
 #include "bernal/core/spheres.hpp"
 #include "bernal/domain/container.hpp"
 #include "core/archive.hpp"
-#include "soft/far_images.hpp"
 #include "soft/list_life.hpp"
 #include "soft/soft_blocks.hpp"
 #include "soft/soft_lists.hpp"
@@ -17,77 +16,77 @@
 
 namespace bernal {
 
-/// How spheres are best moved in three dimensions.
+/// How a sweep moves spheres in three dimensions.
 struct Pace {
   float omega;  ///< over-relaxation, see SoftKernels::sweep
   double wear;  ///< of the lists, see SoftPacking::wear_lists
 };
-/// By the largest overlap ratio that was measured last: hastily while spheres are crowded.
+/// The pace for the largest overlap ratio that was measured last. It is faster while spheres are crowded.
 ///
-/// At six contacts a sweep stops being stable at omega = 6; nearer to that it agitates the spheres, which
-/// finds denser packings while they are crowded, and loses contacts when they come to rest. 3 instead of 5
-/// costs 0.004 of packing fraction. As the normals of n contacts have a mean square of 1 / D along any axis,
-/// a Newton step is D / n times the sum of the overlaps, and these are 1.87 and 1.67 of it: in other
-/// dimensions omega goes with D / 3. The missed neighbours of lists worn twice do no harm to crowded spheres,
-/// and a third of the time is saved; of lists worn more than four times they do, 0.02 of packing fraction.
+/// With six contacts a sphere a sweep is unstable from omega = 6 on. An omega just below that agitates the
+/// spheres: this finds denser packings while they are crowded, and loses contacts when they come to rest.
+/// Omega = 3 instead of 5 costs 0.004 of packing fraction. The normals of n contacts have a mean square of
+/// 1 / D along any axis, so a Newton step is D / n times the sum of the overlaps. The two values of omega are
+/// 1.87 and 1.67 Newton steps; in other dimensions omega is D / 3 times as large. Lists that are worn twice
+/// miss neighbours, which does no harm to crowded spheres and saves a third of the time. Lists that are worn
+/// more than four times cost 0.02 of packing fraction.
 Pace pace_for(double largest_overlap);
 
-/// Overlapping spheres that push each other apart, in a periodic box of one, two or three dimensions or in a
-/// container: the state of the fast relaxation. In single precision and fixed point: overlap ratios are good
-/// to about 1e-6.
+/// The state of the fast relaxation: overlapping spheres that push each other apart, in a periodic box of
+/// one, two or three dimensions or in a container. Numbers are in single precision and fixed point, so that
+/// overlap ratios are good to about 1e-6.
 ///
-/// In a container the box is the container's period along the axes that repeat themselves, and along others
-/// its bounds and so much more that no sphere meets an image.
+/// In a container the box is as long as the container's period along an axis that repeats itself. Along any
+/// other axis it is longer than the container's bounds, by so much that no sphere meets an image.
 class SoftPacking {
  public:
   /// How much larger than given the radii may become in a container.
   static constexpr double most_swelling = 1.05;
 
-  /// Centres in [0, edge). `by_octaves` as of `SoftLists`. Precondition: every edge is at least the largest
-  /// diameter, and will be. Below `smallest_edge` of the radii spheres meet far images, too, see `FarImages`.
-  /// The last `resting` spheres are neighbours of the others, push them, and stay where they are.
-  /// Preconditions: some move; where some rest, every edge is at least the `smallest_edge`.
+  /// Centres in [0, edge). `by_octaves` as of `SoftLists`. The last `resting` spheres push the others and
+  /// stay where they are. Preconditions: at least one sphere moves; every edge is at least the largest
+  /// diameter, now and later. In boxes shorter than two of these, spheres meet several images of each other,
+  /// see `SoftKernels`. While an edge is shorter than the largest diameter, images at a whole edge and more
+  /// do not push.
   template <int D>
   SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, const SoftKernels& kernels,
               bool by_octaves = false, std::size_t resting = 0);
 
-  /// Precondition: all centres are inside the container, which outlives this; its periods are at least
-  /// `most_swelling` times the `smallest_edge` of the radii.
+  /// Preconditions: all centres are inside the container, which outlives this; every period of it is at least
+  /// `most_swelling` times the largest diameter.
   SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels);
 
-  /// In a container: at its walls radii are smaller by so much. Before the first sweep.
+  /// In a container, before the first sweep: radii are smaller by this length where spheres meet walls.
   void relieve_walls(double by) { walls_->relieve(by); }
 
-  /// That of lists, at most, in the unit of the radii.
+  /// The largest skin of the lists, in the unit of the radii.
   static double usual_skin(const std::vector<double>& radii);
-  /// The least edge in which no two images of a sphere are neighbours of one.
-  static double smallest_edge(const std::vector<double>& radii);
-  /// How far apart the centres of two neighbours may be, of spheres with this largest and mean radius.
+  /// The largest distance between the centres of two neighbours, for this largest and mean radius.
   static double farthest_neighbor(double largest, double mean);
 
   /// Lists are built anew when a sphere has moved by `wear` skins. Above 1, neighbours may be missed until
   /// then. 0.9 where nothing is said.
   void wear_lists(double wear) { life_.wear(wear); }
 
-  /// Every sphere is moved once, by min(omega / n, 1) times the sum of its n overlaps. Parallel where there
-  /// are many spheres; the same bits for any number of threads.
+  /// Moves every sphere once, by min(omega / n, 1) times the sum of its n overlaps. Parallel where there are
+  /// many spheres; the same bits for any number of threads.
   void sweep(float omega);
-  /// The same; returns the largest overlap ratio that was met.
+  /// The same; returns the largest overlap ratio that the sweep met.
   double sweep_to_overlap(float omega) { return measure(omega, false); }
-  /// The same; `squeeze` and `forces` then tell about each sphere.
+  /// The same; `squeeze` and `forces` are then known.
   double sweep_and_measure(float omega) { return measure(omega, true); }
-  /// Of each sphere the sum of its squared overlap ratios, as the last measuring sweep met them.
+  /// The sum of squared overlap ratios of each sphere, as the last measuring sweep met them.
   std::vector<float> squeeze() const { return by_id(squeeze_); }
-  /// Of each sphere the sum of the forces on it, 2 ri rj / (ri + rj) times the overlap of each contact, as
-  /// the last measuring sweep met them: the derivative of the energy, whose half that of a pair is times the
-  /// overlap, by its own radius.
+  /// The sum of the forces on each sphere, as the last measuring sweep met them. The force of a contact is
+  /// 2 ri rj / (ri + rj) times the overlap, its energy half of that times the overlap. So the sum is the
+  /// derivative of the energy by the radius of the sphere.
   std::vector<float> forces() const { return by_id(force_); }
-  /// Sphere to[i] takes the place of sphere i, and becomes i's there: `to` is a permutation. Cost: O(N).
+  /// Sphere to[i] takes the place of sphere i. `to` is a permutation. Cost: O(N).
   void exchange(const std::vector<std::uint32_t>& to);
 
-  /// The box and the distances grow; the radii do not.
+  /// Multiplies the box and all distances; radii stay.
   void grow(double factor);
-  /// The radii become `factor` times those that were given, in a container.
+  /// In a container: makes the radii `factor` times those that were given.
   void swell(double factor);
   /// A sphere and where it is put.
   struct Move {
@@ -112,8 +111,9 @@ class SoftPacking {
   /// How often lists were built.
   const Effect& lists_built() const { return lists_built_; }
 
-  /// All of its state, in one that was made of as many spheres with the same radii in the same box or
-  /// container. Lists are not kept but built again, of what they were built of.
+  /// Writes or reads the state. What reads it was made of the same number of spheres, with the same radii, in
+  /// the same box or container. Lists are not written: they are built again from the places that they were
+  /// built from.
   void archive(Archive& a);
 
  private:
@@ -122,6 +122,7 @@ class SoftPacking {
               bool by_octaves);
 
   float diameter_of_all() const;
+  unsigned narrow_axes() const;
   float move_all(float omega, bool measure, bool each);
   double measure(float omega, bool each);
   template <int D>
@@ -137,7 +138,7 @@ class SoftPacking {
 
   const SoftKernels& kernels_;
   std::size_t count_;
-  std::uint32_t movers_ = nobody;  // the first so many, where others rest
+  std::uint32_t movers_ = nobody;  // spheres with smaller ids move, the others rest
   int dimension_;
   std::array<double, 3> edges_;
   Vector<3> corner_ = Vector<3>::Zero();
@@ -145,20 +146,18 @@ class SoftPacking {
   ListLife life_;
   SoftLists lists_;
   bool by_octaves_;
-  std::unique_ptr<SoftBlocks> blocks_;  // where there are so many spheres that they are worth them
-  bool in_blocks_ = false;              // the spheres are swept: else by lists_
-  std::unique_ptr<SoftWalls> walls_;    // null in a periodic box
-  FarImages far_images_;
+  std::unique_ptr<SoftBlocks> blocks_;     // where there are so many spheres that they are worth them
+  bool in_blocks_ = false;                 // whether blocks_ sweeps the spheres, and not lists_
+  std::unique_ptr<SoftWalls> walls_;       // null in a periodic box
   std::vector<SoftSphere> spheres_;        // in sweep order
-  std::vector<std::uint32_t> sites_;       // in sweep order: what the walls know of a place goes with it
+  std::vector<std::uint32_t> sites_;       // in sweep order; the walls keep what they know by site
   std::vector<std::uint32_t> id_of_site_;  // of the sphere that stands there
   std::vector<float> squeeze_, force_;
   std::vector<float> radii_;               // as given, by id
   float swelling_ = 1;                     // of these
   std::vector<SoftSphere> built_at_;       // where they were when the lists were built
-  std::vector<std::uint32_t> sites_then_;  // in the order in which they came to that
+  std::vector<std::uint32_t> sites_then_;  // in their order before that
   std::array<double, 3> edges_then_{};
-  double wear_then_ = 0;
   Effect lists_built_{"neighbour lists", 0, 0};
 };
 

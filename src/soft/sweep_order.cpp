@@ -10,18 +10,18 @@
 namespace bernal {
 namespace {
 
-/// The share of the spheres, the largest, that is swept apart if the others are smaller.
+/// The share of the spheres, the largest ones, that is swept apart if the others are smaller.
 constexpr double share_of_large = 0.01;
-/// Where no more than this share of the spheres is smaller than a level, they join it: a level costs a search
+/// A level must hold more than this share of the spheres, with all smaller ones: each level costs a search
 /// for every sphere.
 constexpr double share_of_level = 0.6;
 constexpr std::size_t most_levels = 24;
-/// Of the longest pencil, so many make a chain at least: with hardly more than `lanes` not all groups could
-/// be full.
+/// A chain has at least the spheres of so many pencils as long as the longest: with hardly more than `lanes`
+/// of them not all groups could be full.
 constexpr double pencils_a_chain = 20;
-/// At least; to sweep them takes about as long as it takes threads to meet.
+/// The fewest spheres of a chain: to sweep them takes about as long as threads take to meet.
 constexpr double spheres_a_chain = 2048;
-/// For which pencils are cut, into parts of so many widths.
+/// Pencils are cut until a colour has so many chains, into parts of at least so many widths.
 constexpr double chains_a_colour = 8, shortest_part = 2;
 /// Spheres whose radii differ by less than this part of an octave are alike.
 constexpr double classes_per_octave = 4;
@@ -67,7 +67,7 @@ void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& reg
   phases_.clear();
   sphere_at_.clear();
 
-  // Along the axis, and in classes where there are sizes: one key for both.
+  // One key for the part of the axis and the class of the radius.
   const auto count = static_cast<std::size_t>(std::ranges::count_if(spheres, is_there));
   const double length = edges[0] * static_cast<double>(region.extent[0]) * 0x1p-32;
   const std::size_t along =
@@ -89,7 +89,7 @@ void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& reg
     add_pencils(order_, sizes.large);
     return;
   }
-  // The large ones come last: they are moved by what has given way to them.
+  // Large spheres come last, after the small ones have given way to them.
   std::array<std::vector<std::uint32_t>, most_levels> octaves;
   for (const std::uint32_t i : order_) {
     std::size_t k = 0;
@@ -100,7 +100,7 @@ void SweepOrder::find(std::span<const SoftSphere> spheres, const SoftRegion& reg
     if (!octaves[k].empty()) add_pencils(octaves[k], std::ldexp(sizes.largest, -static_cast<int>(k)));
 }
 
-/// Where each of `order` is: in `sorted_` by pencil, those larger than `largest` behind all pencils.
+/// Sorts `order` by pencil into `sorted_`. Spheres larger than `largest` come behind all pencils.
 void SweepOrder::sort_into_pencils(const std::vector<std::uint32_t>& order, float largest,
                                    const std::array<int, 3>& across) {
   const auto [x, y, z] = across;
@@ -116,7 +116,7 @@ void SweepOrder::sort_into_pencils(const std::vector<std::uint32_t>& order, floa
   put_into_buckets(order.size(), pencils + 1, pencil_of, put, start_, room_, in_threads_);
 }
 
-/// Into how many parts pencils are to be cut, so that every colour has chains enough for threads.
+/// The number of parts that pencils are cut into, so that every colour has enough chains for threads.
 int SweepOrder::parts_along(std::size_t spheres, std::size_t longest, double width) const {
   const auto n = static_cast<double>(spheres);
   const double chains = n / (4 * pencils_a_chain * static_cast<double>(longest));
@@ -127,11 +127,11 @@ int SweepOrder::parts_along(std::size_t spheres, std::size_t longest, double wid
   return std::max(1, std::min(most, 2 * static_cast<int>(std::ceil(wanted / chains))));
 }
 
-/// Places for the spheres of `order` behind those that there are: in pencils, and those larger than `largest`
-/// after the others, in pencils of their own.
+/// Appends places for the spheres of `order`: in pencils, and then those larger than `largest` in pencils of
+/// their own.
 void SweepOrder::add_pencils(const std::vector<std::uint32_t>& order, float largest) {
   const double width = 2.0 * (largest + skin_);
-  // Few spheres in much room do not need more pencils than there are spheres.
+  // No more pencils than spheres.
   const int most_across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(order.size()))));
   const auto pencils_across = [&](std::size_t k) {
     const double length = edges_[k] * static_cast<double>(region_.extent[k]) * 0x1p-32;
@@ -165,14 +165,14 @@ void SweepOrder::add_pencils(const std::vector<std::uint32_t>& order, float larg
   if (!larger.empty()) add_pencils(larger, radius_of_most(larger));
 }
 
-/// That hardly any of them exceeds.
+/// The radius that hardly any of them exceeds.
 float SweepOrder::radius_of_most(const std::vector<std::uint32_t>& order) const {
   std::vector<float> radii;
   for (const std::uint32_t i : order) radii.push_back(spheres_[i].r);
   return quantile_of_most(radii);
 }
 
-/// The pencils of a colour, cut into chains of as many spheres each.
+/// Divides the pencils of a colour into chains with similar numbers of spheres.
 void SweepOrder::draft_phase(const std::vector<Pencil>& pencils) {
   if (pencils.empty()) return;
   std::size_t spheres = 0, longest = 0;
@@ -183,7 +183,7 @@ void SweepOrder::draft_phase(const std::vector<Pencil>& pencils) {
   auto chains = static_cast<std::size_t>(
       std::max(1.0, static_cast<double>(spheres) /
                         std::max(spheres_a_chain, pencils_a_chain * static_cast<double>(longest))));
-  // As many for each of two, four or eight threads.
+  // A multiple of two, four or eight, for as many threads.
   chains &= ~(std::bit_floor(std::min<std::size_t>(chains, 8)) - 1);
   phases_.emplace_back();
   std::size_t number = 0, before = 0;
@@ -196,7 +196,7 @@ void SweepOrder::draft_phase(const std::vector<Pencil>& pencils) {
   }
 }
 
-/// Of the last phase, without pencils.
+/// A draft of the last phase, without pencils.
 SweepOrder::Draft& SweepOrder::new_draft() {
   if (drafted_ == drafts_.size()) drafts_.emplace_back();
   Draft& draft = drafts_[drafted_++];
@@ -205,9 +205,9 @@ SweepOrder::Draft& SweepOrder::new_draft() {
   return draft;
 }
 
-/// Every pencil is spread evenly over all groups, and so comes to its end with the others. What finds its
-/// group full, or another of its pencil there, waits for the next one; where there is room left, the group
-/// takes some of that.
+/// Spreads every pencil evenly over all groups, so that all end together. A sphere whose group is full, or
+/// has another sphere of its pencil, waits for the next group; a group with room left takes spheres that are
+/// due later.
 void SweepOrder::put_together(Draft& chain) const {
   const std::vector<Pencil>& pencils = chain.pencils;
   std::vector<std::uint32_t>& sphere_at = chain.sphere_at;
@@ -261,7 +261,7 @@ void SweepOrder::put_together(Draft& chain) const {
   }
 }
 
-/// The chains that have been put together, behind those that there are.
+/// Appends the chains that were put together.
 void SweepOrder::add_drafts() {
   for (std::size_t d = 0; d < drafted_; ++d) {
     const std::vector<std::uint32_t>& sphere_at = drafts_[d].sphere_at;

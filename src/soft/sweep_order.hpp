@@ -11,48 +11,49 @@ namespace bernal {
 
 inline constexpr std::uint32_t nobody = 0xFFFFFFFF;
 
-/// Of the radii of all spheres that are swept, as far as it matters to their order and their lists.
+/// What the order of sweeps and the lists need to know of the radii.
 struct SoftSizes {
   float largest = 0;           ///< radius
-  float large = 0;             ///< spheres with larger radii are swept apart: one per cent at most
-  bool equal = true;           ///< radii
-  std::size_t levels = 1;      ///< of the background grid, each for radii half as large
-  double volume_a_sphere = 0;  ///< mean
+  float large = 0;             ///< at most one per cent of the spheres are larger; they are swept apart
+  bool equal = true;           ///< whether all radii are equal
+  std::size_t levels = 1;      ///< of the background grid; each holds radii half as large as the one before
+  double volume_a_sphere = 0;  ///< mean volume of a sphere
 
   SoftSizes() = default;
   /// Cost: O(levels · N).
   explicit SoftSizes(const std::vector<float>& radii);
 };
 
-/// Groups [first, last) that have to be swept one after the other, while other chains may be swept at the
-/// same time.
+/// Groups [first, last) that are swept one after the other. Other chains of the same phase may be swept at
+/// the same time.
 struct Chain {
   std::size_t first, last;
 };
 
-/// In what order the spheres of a region are swept.
+/// The order in which the spheres of a region are swept.
 ///
-/// The region is cut into pencils along the first axis, at least as wide as two neighbours can be apart, and
-/// every second pencil on each of the other axes is given the same colour. Spheres of different pencils of
-/// one colour are never neighbours. So a group takes its spheres from as many pencils of a colour, a chain is
-/// a sequence of groups from the same pencils, and the chains of a colour are independent of each other.
-/// Where there are too few pencils for threads they are cut, and colours alternate along the first axis as
-/// well. Within a pencil spheres of similar radii come together, so that the lists in a group are of similar
-/// length; among these the order is along the axis. The few largest spheres, for whose sake pencils would
-/// have to be too wide, come after the others, in wider pencils.
+/// The region is cut into pencils along the first axis. A pencil is at least as wide as two neighbours can be
+/// apart; every second pencil along each of the other axes has the same colour. So spheres in different
+/// pencils of one colour are never neighbours, in any image: an axis that is shorter than two pencils has
+/// one. A group takes its spheres from different pencils of a colour, a chain is a sequence of groups from
+/// the same pencils, and the chains of a colour are independent of each other. If there are too few pencils
+/// for threads, they are cut, and colours alternate along the first axis as well. In a pencil spheres of
+/// similar radii come together, so that the lists in a group have similar lengths; among these the order is
+/// along the axis. The few largest spheres, which would make all pencils too wide, come last, in wider
+/// pencils.
 ///
-/// All this is a function of the places and radii alone, the same for any number of threads.
+/// The order depends on the places and radii only, and not on the number of threads.
 class SweepOrder {
  public:
-  /// Finds the order of these spheres, all with centres in the region, but for gaps, those with a radius of
-  /// NaN. `by_octaves`: spheres whose radii differ by more than an octave are swept one kind after the other,
-  /// each in pencils as wide as it needs, the largest last. Cost: some 50 ns a sphere.
+  /// Finds the order of these spheres, whose centres are in the region. Those with a radius of NaN are gaps
+  /// and are left out. With `by_octaves` each octave of radii is swept by itself, in pencils as wide as it
+  /// needs, the largest octave last. Cost: some 50 ns a sphere.
   void find(std::span<const SoftSphere> spheres, const SoftRegion& region, const std::array<double, 3>& edges,
             const SoftSizes& sizes, float skin, bool by_octaves, bool in_threads = false);
 
-  /// For every place, a whole number of groups of them, which of the spheres has it, or `nobody`.
+  /// The index of the sphere at every place, or `nobody`. The places are a whole number of groups.
   const std::vector<std::uint32_t>& sphere_at() const { return sphere_at_; }
-  /// By colour.
+  /// The chains of each phase. Phases follow each other.
   const std::vector<std::vector<Chain>>& phases() const { return phases_; }
 
  private:
@@ -63,7 +64,7 @@ class SweepOrder {
   struct Turn {
     std::uint32_t sphere, pencil;
   };
-  /// A chain to be, by itself: chains are put together at the same time.
+  /// A chain while it is put together, which threads do at the same time.
   struct Draft {
     std::size_t phase = 0;
     std::vector<Pencil> pencils;

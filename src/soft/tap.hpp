@@ -3,21 +3,19 @@
 
 namespace bernal {
 
-/// What packs spheres as densely as vibration does: they overlap softly and push each other apart while all
-/// are displaced at random again and again, `taps` times, by less and less: annealing, which orders spheres
-/// along the walls. All that the target asks for start where they are, in the bed or else in
-/// `Work::crowded_start`, or at random; where they then are, with what overlap is left, becomes
-/// `Work::crowded_start`, with which relaxation begins.
+/// Packs spheres as densely as vibration does. Overlapping spheres push each other apart, and `taps` times
+/// all are displaced at random, each time by less. This annealing orders spheres along the walls. The spheres
+/// that the target asks for start where they are in the bed, else in `Work::crowded_start`, else at random.
+/// Their places at the end, with the overlap that is left, become `Work::crowded_start`, where relaxation
+/// begins.
 ///
-/// Equal spheres in columns, `usual_taps`: 10, 20 diameters across reach 0.372, 0.364 far from the ends,
-/// where relaxation alone reaches 0.39, 0.38. Cost: `seconds_a_tap` a sphere and tap.
-///
-/// `first`: how far the first tap displaces a sphere along each axis, at most, in its radius; the last a
-/// tenth of `first_tap`.
+/// The first tap displaces a sphere along each axis by at most `first` of its radius, the last by a tenth of
+/// `first_tap`. With `usual_taps` equal spheres in columns 10 and 20 diameters across reach porosities of
+/// 0.372 and 0.364 far from the ends, relaxation alone 0.39 and 0.38. Cost: `seconds_a_tap` a sphere and tap.
 void tap(Work&, int taps, double first);
 
 inline constexpr int usual_taps = 1000;
-/// Of spheres at random places; of those that were tapped before.
+/// For spheres at random places, and for spheres that were tapped before.
 inline constexpr double first_tap = 0.6, next_tap = 0.3;
 inline constexpr double seconds_a_tap = 0.7e-6;
 

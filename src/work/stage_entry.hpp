@@ -20,7 +20,6 @@ struct Outlook {
   double aim = 0;          ///< packing fraction, expected in the end
   double gain = 1;         ///< of that, by stages that make denser packings than sizes reach by themselves
   double spread = 1;       ///< mean of r³ over that of r, cubed: 1 for equal spheres
-  double width = 0;        ///< shortest edge in largest diameters, but for one in 10,000
   Coordinates size = {};   ///< edges of the bounds, in mean diameters
   double at_walls = 0;     ///< share of the spheres that touch or nearly touch a wall
   double wall_query = 0;   ///< seconds that a question to the walls takes; 0 without walls

@@ -70,6 +70,10 @@ inline std::vector<SceneUnderTest> own_scenes() {
                            "radius = { distribution = \"uniform\", min = 1.0, max = 2.0 }\n" +
                            relax);
   add("PeriodicUnequalEdges", unequal_edges);
+  add("PeriodicSlabOfTwoDiameters", periodic +
+                                        "size = [1.7, 9.0, 8.0]\nscalable = true\n[spheres]\ncount = 120\n"
+                                        "diameter = { distribution = \"uniform\", min = 0.8, max = 1.0 }\n" +
+                                        relax);
   add("PeriodicBoxOfGivenSize",
       periodic + "size = [1.0, 1.2, 0.9]\n[spheres]\npacking_fraction = 0.55\nradius = 0.09\n" + relax);
   const std::string fly = "[[stage]]\ndo = \"fly\"\n";

@@ -76,7 +76,7 @@ void expect_parted(Spheres<3> spheres, const Vector<3>& edges, int cycles) {
   EXPECT_LT(grown.minCoeff(), 4);
 }
 
-TEST(FarImages, AreMetInBoxesNarrowerThanTwoSpheres) {
+TEST(SeveralImages, AreMetInBoxesNarrowerThanTwoSpheres) {
   Random random(3, stream(Stream::test));
   Spheres<3> spheres;
   const Vector<3> edges(2.3, 2.1, 2.6);
@@ -88,8 +88,8 @@ TEST(FarImages, AreMetInBoxesNarrowerThanTwoSpheres) {
   expect_parted(spheres, edges, 400);
 }
 
-/// Narrow along one axis or two, so that nearly every sphere has far images.
-TEST(FarImages, AreMetInWideAndThinBoxes) {
+/// Narrow along one axis or two, so that nearly every pair has a second image that is near.
+TEST(SeveralImages, AreMetInWideAndThinBoxes) {
   for (const Vector<3>& edges : {Vector<3>(14, 15, 2.05), Vector<3>(2.2, 60, 2.1)}) {
     Random random(5, stream(Stream::test));
     Spheres<3> spheres;

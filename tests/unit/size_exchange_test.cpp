@@ -114,9 +114,9 @@ void expect_exchanged(const Vector<D>& edges, double r_max) {
 }
 
 TEST(SoftEngine, ExchangesInEveryKindOfBox) {
-  expect_exchanged<3>(Vector<3>(1, 1.2, 0.9), 0.08);  // SoftPacking
+  expect_exchanged<3>(Vector<3>(1, 1.2, 0.9), 0.08);
   expect_exchanged<2>(Vector<2>(1, 1.2), 0.05);
-  expect_exchanged<3>(Vector<3>(1, 1.2, 0.3), 0.08);  // too narrow for it
+  expect_exchanged<3>(Vector<3>(1, 1.2, 0.3), 0.08);  // several images
   expect_exchanged<4>(Vector<4>(1, 1, 1, 1), 0.15);
 }
 
