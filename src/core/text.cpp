@@ -140,6 +140,13 @@ std::string remedy(std::string_view name, std::span<const std::string_view> cand
   return known;
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r\n\v\f";
+  const std::size_t first = text.find_first_not_of(blank);
+  return first == text.npos ? text.substr(0, 0)
+                            : text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
 std::string grouped(std::uint64_t n) {
   std::string digits = std::to_string(n);
   for (std::size_t from_right = 3; from_right < digits.size(); from_right += 4) {

@@ -258,6 +258,15 @@ Boundary<D> boundary_of(const Domain& domain) {
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 
+Boundary<3> boundary_in_space(const Domain& domain) {
+  if (dimension_of(domain) == 3) return boundary_of<3>(domain);
+  const Boundary<2> own = boundary_of<2>(domain);
+  Boundary<3> boundary;
+  boundary.edges.head<2>() = own.edges;
+  boundary.origin.head<2>() = own.origin;
+  return boundary;
+}
+
 void wrap(Spheres<dynamic>& spheres, const Domain& domain) {
   with_dimension(dimension_of(domain), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;

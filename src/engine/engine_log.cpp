@@ -17,13 +17,6 @@ namespace {
 /// Taken in at a time.
 constexpr std::uintmax_t most_of_log = 1 << 20;
 
-std::string_view trimmed(std::string_view line) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!line.empty() && blank(line.front())) line.remove_prefix(1);
-  while (!line.empty() && blank(line.back())) line.remove_suffix(1);
-  return line;
-}
-
 /// The first line that holds the text, from where it stands; empty where there is none.
 std::string_view line_with(std::string_view text, std::string_view what) {
   const std::size_t at = text.find(what);

@@ -17,15 +17,6 @@ namespace {
 
 constexpr double least_face = 1e-6;  ///< of the surface of a cell
 
-Boundary<3> boundary_in_space(const Domain& domain) {
-  if (dimension_of(domain) == 3) return boundary_of<3>(domain);
-  const Boundary<2> own = boundary_of<2>(domain);
-  Boundary<3> boundary;
-  boundary.edges.head<2>() = own.edges;
-  boundary.origin.head<2>() = own.origin;
-  return boundary;
-}
-
 /// Whether bounds and periods are the only walls.
 bool is_box(const Domain& domain) { return std::holds_alternative<Box>(domain); }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "files/csv_headings.hpp"
 #include "files/csv_lines.hpp"
 #include "files/file_kind.hpp"
@@ -18,13 +19,6 @@ namespace bernal {
 namespace {
 
 constexpr std::size_t longest_pair = 1000;
-constexpr std::string_view blank = " \t\r\v\f";
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(blank);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
 
 /// The number that the text begins with, which is taken off.
 std::optional<double> take_number(std::string_view& text) {
@@ -38,7 +32,7 @@ std::optional<double> take_number(std::string_view& text) {
 std::optional<std::array<double, 2>> pair_in(std::string_view line) {
   const std::optional<double> first = take_number(line);
   if (!first || line.empty()) return std::nullopt;
-  if (blank.find(line.front()) == blank.npos && line.front() != ',' && line.front() != ';')
+  if (trimmed(line.substr(0, 1)).size() == 1 && line.front() != ',' && line.front() != ';')
     return std::nullopt;
   line = trimmed(line);
   if (line.starts_with(',') || line.starts_with(';')) line = trimmed(line.substr(1));

@@ -58,19 +58,11 @@ Vector<3> in_frame(const Vector<dynamic>& p, const Frame& frame) {
   return frame.to_local(in_space);
 }
 
-/// The period of each axis; 0 if it has none, and beyond the domain's dimension.
-Vector<3> periods_of(const Domain& domain) {
-  Vector<3> periods = Vector<3>::Zero();
-  if (dimension_of(domain) == 2) periods.head<2>() = boundary_of<2>(domain).edges;
-  if (dimension_of(domain) == 3) periods = boundary_of<3>(domain).edges;
-  return periods;
-}
-
 /// Depth of a sphere behind the walls, or the ends of the periods, which hide it.
 std::vector<double> depths_of(const Packing& packing, std::span<const std::uint32_t> of) {
   const int dimension = packing.spheres.dimension();
   const Bounds<dynamic> bounds = bounds_of<dynamic>(packing.domain);
-  const Vector<3> periods = periods_of(packing.domain);
+  const Vector<3> periods = boundary_in_space(packing.domain).edges;
   std::vector<double> depths(of.size(), bounds.size().maxCoeff());
   if (has_walls(packing.domain)) depths = wall_gaps(packing.spheres, packing.domain, of, packing.container);
   parallel_ranges(of.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
@@ -198,7 +190,7 @@ std::string domain_json(const Domain& domain, const Frame& frame, const ViewOpti
   return fmt::format("{{\"kind\":{},\"name\":{},\"walls\":{},\"lower\":{},\"upper\":{},\"periods\":{}{}}}",
                      json_text(kind), json_text(name_of(domain)), has_walls(domain),
                      json_list(in_frame(bounds.lower, frame)), json_list(in_frame(bounds.upper, frame)),
-                     json_list(periods_of(domain) / frame.scale),
+                     json_list(boundary_in_space(domain).edges / frame.scale),
                      std::visit(WallsJson{frame, options.most_triangles}, domain));
 }
 

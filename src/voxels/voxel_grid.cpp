@@ -5,7 +5,6 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/voxels/voxels.hpp"
-#include "voxels/periods.hpp"
 
 namespace bernal {
 namespace {
@@ -27,7 +26,7 @@ void require_dimension(const Domain& domain) {
 
 VoxelGrid grid_of_edge(const Domain& domain, double edge) {
   const Bounds<3> bounds = bounds_of(domain);
-  const Vector<3> periods = periods_of(domain);
+  const Vector<3> periods = boundary_in_space(domain).edges;
   VoxelGrid grid{.dimension = dimension_of(domain), .corner = bounds.lower};
   double counts[3] = {1, 1, 1};
   for (int k = 0; k < grid.dimension; ++k) {
@@ -63,18 +62,12 @@ bool VoxelGrid::has_cubes() const {
   return true;
 }
 
-Vector<3> periods_of(const Domain& domain) {
-  if (dimension_of(domain) == 3) return boundary_of<3>(domain).edges;
-  const Vector<2> edges = boundary_of<2>(domain).edges;
-  return {edges[0], edges[1], 0};
-}
-
 VoxelGrid voxel_grid(const Domain& domain, double edge) {
   require_dimension(domain);
   if (!(edge > 0 && std::isfinite(edge)))
     throw Error(ErrorCode::bad_argument,
                 fmt::format("the edge of a voxel must be a positive length, not {}", edge));
-  const double longest = periods_of(domain).maxCoeff();
+  const double longest = boundary_in_space(domain).edges.maxCoeff();
   return grid_of_edge(domain, longest > 0 ? longest / std::max(1.0, std::round(longest / edge)) : edge);
 }
 

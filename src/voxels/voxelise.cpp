@@ -12,7 +12,6 @@
 #include "core/parallel.hpp"
 #include "voxels/ball_in_cells.hpp"
 #include "voxels/inside.hpp"
-#include "voxels/periods.hpp"
 
 namespace bernal {
 namespace {
@@ -60,7 +59,7 @@ struct Names {
 class Image {
  public:
   Image(const Spheres<dynamic>& spheres, const Domain& domain, const VoxelGrid& grid)
-      : spheres_(spheres), grid_(grid), periods_(periods_of(domain)) {
+      : spheres_(spheres), grid_(grid), periods_(boundary_in_space(domain).edges) {
     if (has_walls(domain)) inside_.emplace(domain, grid);
   }
 
@@ -240,7 +239,7 @@ class Image {
 /// Each sphere is drawn once an image; a sphere of a packing has at most eight.
 void require_few_images(const Spheres<dynamic>& spheres, const Domain& domain) {
   constexpr double most_images = 1e6;
-  const Vector<3> periods = periods_of(domain);
+  const Vector<3> periods = boundary_in_space(domain).edges;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     double images = 1;
     for (const double period : periods)

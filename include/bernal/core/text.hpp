@@ -26,6 +26,9 @@ std::string plain_text(std::string_view text, std::size_t most = 500);
 /// The text with those characters and marks written as TOML and JSON do: \u202E.
 std::string with_escaped_controls(std::string_view text);
 
+/// Without white space at the ends.
+std::string_view trimmed(std::string_view text);
+
 /// 28312 as "28,312".
 std::string grouped(std::uint64_t n);
 

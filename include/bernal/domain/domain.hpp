@@ -105,6 +105,8 @@ double area_of(const Domain&);
 /// The metric: the periods of the axes that have one. Precondition: D is the dimension.
 template <int D>
 Boundary<D> boundary_of(const Domain&);
+/// The metric in space of a domain of two or three dimensions: one in the plane z = 0 has no period along z.
+Boundary<3> boundary_in_space(const Domain&);
 
 /// The domain with all its walls moved inwards by so much, or outwards where that is negative; what repeats
 /// itself stays as it is. Rounded inwards, by some roundoffs of the coordinates, and not at all where every

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "bernal/core/text.hpp"
 #include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 

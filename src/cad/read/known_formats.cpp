@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/text.hpp"
 #include "core/lower_case.hpp"
 
 namespace bernal::cad {

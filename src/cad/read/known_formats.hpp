@@ -6,13 +6,6 @@
 
 namespace bernal::cad {
 
-/// Without leading and trailing white space.
-inline std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
 /// Parses a text that is a finite number and nothing else except a sign + and blanks around it; underflow
 /// gives 0. Absent otherwise, or if it is longer than a number needs.
 std::optional<double> finite_number(std::string_view text);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "cad/diagnose/counted.hpp"
 #include "cad/read/caged_reader.hpp"
 #include "cad/read/file_facts.hpp"

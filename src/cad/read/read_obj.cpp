@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "bernal/core/text.hpp"
 #include "cad/read/file_facts.hpp"
 #include "cad/read/known_formats.hpp"
 #include "cad/read/polygon_soup.hpp"

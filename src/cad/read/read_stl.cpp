@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "cad/diagnose/counted.hpp"
 #include "cad/read/file_facts.hpp"
 #include "cad/read/known_formats.hpp"
