@@ -7,7 +7,6 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,7 +16,6 @@
 #include <cstring>
 #include <fstream>
 #include <new>
-#include <utility>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"

@@ -33,10 +33,10 @@ inline Spheres<3> scattered(std::size_t n, double r_min, double r_max, const Bou
 }
 
 /// A packing as `run` would return it, for what reads packings and changes nothing.
-inline Packing packing_of(Spheres<3> spheres, const Box& box) {
+inline Packing packing_of(Spheres<3> spheres, const Box& domain) {
   Packing packing;
   packing.spheres = std::move(spheres);
-  packing.domain = box;
+  packing.domain = domain;
   packing.volume = volume_of(packing.domain);
   packing.scene = parse_scene(
       "unit = \"mm\"\n[container]\nkind = \"box\"\nsize = [10.0, 10.0, 10.0]\n"
