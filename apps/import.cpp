@@ -104,7 +104,8 @@ std::vector<Entry> entries_of_import_formats() {
     std::string of;
     for (const std::string& option : format.options) of += " --" + option;
     entries.push_back(
-        {format.name, fmt::format("{}\nunit: {}{}{}", format.what, format.unit, of.empty() ? "" : ";", of)});
+        {format.name, in_words_of_command(fmt::format("{}\nunit: {}{}{}", format.what, format.unit,
+                                                      of.empty() ? "" : ";", of))});
   }
   return entries;
 }

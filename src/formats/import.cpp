@@ -48,16 +48,16 @@ void require_file(const std::filesystem::path& file) {
 
 void check_options(const ImportOptions& options) {
   if (options.diameter && options.radius)
-    refuse_option("--diameter and --radius say the same; give one of them");
+    refuse_option("‹diameter› and ‹radius› say the same; give one of them");
   for (const auto& [name, length] : {std::pair{"diameter", options.diameter}, {"radius", options.radius}})
     if (length && !is_size(*length))
-      refuse_option(fmt::format("--{}: {}", name, complaint_of_size(*length, name[0] == 'd')));
+      refuse_option(fmt::format("‹{}›: {}", name, complaint_of_size(*length, name[0] == 'd')));
   for (const double edge : options.box)
-    if (!is_size(edge)) refuse_option(fmt::format("--box: {} is no length of an edge", edge));
+    if (!is_size(edge)) refuse_option(fmt::format("‹box›: {} is no length of an edge", edge));
   for (const double along : options.shift)
-    if (!(std::abs(along) <= farthest_place)) refuse_option(fmt::format("--shift: {} is no length", along));
+    if (!(std::abs(along) <= farthest_place)) refuse_option(fmt::format("‹shift›: {} is no length", along));
   if (options.dimension && *options.dimension != 2 && *options.dimension != 3)
-    refuse_option("--dimension is 2 or 3");
+    refuse_option("‹dimension› is 2 or 3");
 }
 
 /// Of two dimensions, where the file or the options say so.
@@ -67,7 +67,7 @@ void flatten(FileContents& contents, const Reading& reading) {
   if (const auto& asked = reading.options.dimension;
       asked && x.size() != 3 && x.size() != static_cast<std::size_t>(*asked))
     refuse_file(reading.file,
-                fmt::format("has {} coordinates of each sphere, and --dimension says {}; leave it out, or "
+                fmt::format("has {} coordinates of each sphere, and ‹dimension› says {}; leave it out, or "
                             "name the other columns",
                             x.size(), *asked));
   if (!wanted || x.size() != 3) return;
@@ -75,7 +75,7 @@ void flatten(FileContents& contents, const Reading& reading) {
   if (other != x[2].end())
     refuse_file(reading.file,
                 fmt::format("discs have one z, but these have {} and {}{}", x[2].front(), *other,
-                            reading.options.dimension ? "; leave --dimension out" : ""));
+                            reading.options.dimension ? "; leave ‹dimension› out" : ""));
   x.pop_back();
 }
 
@@ -83,21 +83,21 @@ void take_sizes(FileContents& contents, const Reading& reading) {
   const ImportOptions& options = reading.options;
   const bool given = options.diameter || options.radius;
   if (!contents.spheres.r.empty()) {
-    if (given) refuse_option("the file has sizes of its own; leave --diameter and --radius out");
+    if (given) refuse_option("the file has sizes of its own; leave ‹diameter› and ‹radius› out");
     return;
   }
   if (!given)
     refuse_file(
         reading.file,
-        "does not say how large its spheres are; give --diameter or --radius, or where it has columns "
-        "name that of the size by --columns");
+        "does not say how large its spheres are; give ‹diameter› or ‹radius›, or where it has columns "
+        "name that of the size by ‹columns›");
   contents.spheres.r.assign(contents.size(), options.radius ? *options.radius : 0.5 * *options.diameter);
 }
 
 void move_by(Spheres<dynamic>& spheres, const std::vector<double>& shift) {
   if (shift.empty()) return;
   if (shift.size() != spheres.x.size())
-    refuse_option(fmt::format("--shift needs a length for each of {} dimensions, not {}", spheres.x.size(),
+    refuse_option(fmt::format("‹shift› needs a length for each of {} dimensions, not {}", spheres.x.size(),
                               shift.size()));
   for (std::size_t k = 0; k < shift.size(); ++k)
     for (double& x : spheres.x[k]) x += shift[k];
@@ -123,7 +123,7 @@ void require_sensible(const Packing& packing, const std::filesystem::path& file)
   if (!(phi <= most_filled))
     refuse_file(file,
                 fmt::format("its spheres have {:.3g} times the volume of the {} they are to lie in; check "
-                            "--unit, --box, and whether its sizes are diameters or radii",
+                            "‹unit›, ‹box›, and whether its sizes are diameters or radii",
                             phi, name_of(packing.domain)));
 }
 
@@ -131,7 +131,7 @@ void require_elsewhere(const std::filesystem::path& file, const std::filesystem:
   if (is_in_place_of_result(file, folder))
     throw Error(
         ErrorCode::cannot_write,
-        "is the file being imported, and the result would take its place; give another folder with -o",
+        "is the file being imported, and the result would take its place; give another ‹folder›",
         {file.string()});
 }
 
@@ -191,7 +191,7 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   const auto& x = packing.spheres.x;
   if (x.size() == 3 && x[2].size() > 2 &&
       std::ranges::all_of(x[2], [&](double z) { return z == x[2].front(); }))
-    made.notes.push_back({"plane", "all centres have one z; --dimension 2 takes them for discs"});
+    made.notes.push_back({"plane", "all centres have one z; ‹dimension=2› takes them for discs"});
   if (moved > 0)
     made.notes.push_back({"wrapped", fmt::format("{} of {} centres, which lay outside the box",
                                                  grouped(moved), grouped(packing.spheres.size()))});

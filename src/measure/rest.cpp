@@ -200,7 +200,7 @@ class SpheresInWalls {
 };
 
 constexpr std::string_view how_to_import =
-    "of a packing of others, import --periodic none says that its box ends at walls";
+    "a packing of another program has walls where it is imported with ‹periodic=none›";
 
 Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
              const RestOptions& options, const std::shared_ptr<const Container>& made) {

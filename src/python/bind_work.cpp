@@ -196,7 +196,7 @@ JobPointer import_job(const Path& file, const std::string& format, const std::st
     auto shared = std::make_shared<Packing>(std::move(made.packing));
     return [shared, notes = std::move(made.notes)]() -> py::object {
       py::dict all;
-      for (const auto& [about, words] : notes) all[py::str(about)] = words;
+      for (const auto& [about, words] : notes) all[py::str(about)] = in_words_of_python(words);
       return py::make_tuple(shared, all);
     };
   });

@@ -4,6 +4,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/monitor.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/engine/engine_error.hpp"
 #include "bernal/version.hpp"
 #include "python/bindings.hpp"
@@ -41,6 +42,7 @@ void raise(const Error& error, std::string_view code) {
   const Location& where = error.location();
   std::string message = error.what();
   if (const std::string place = where.text(); !place.empty()) message.erase(0, place.size() + 2);
+  message = in_words_of_python(message);
   const py::object raised =
       called(exception_of_error(),
              py::make_tuple(code, message, where.file, where.line, where.column));
@@ -65,6 +67,16 @@ void translate(std::exception_ptr thrown) {
 }
 
 }  // namespace
+
+std::string in_words_of_python(std::string_view message) {
+  return with_options(message, [](std::string_view name, std::string_view value) -> std::string {
+    const std::string word(name), said(value);
+    if (value.empty()) return word;
+    if (value.find_first_not_of("0123456789.,") != value.npos) return word + "='" + said + "'";
+    return word + (value.find(',') == value.npos ? "=" + said : "=[" + said + "]");
+  });
+}
+
 }  // namespace bernal::python
 
 PYBIND11_MODULE(_core, module) {

@@ -154,7 +154,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
   Scene packed = scene;
   const std::vector<NamedFile> files = files_named_in(packed);
   if (options.with_mesh && files.empty())
-    throw Error(ErrorCode::bad_argument, "--with-mesh copies a CAD file, and this container is none");
+    throw Error(ErrorCode::bad_argument, "‹with_mesh› copies a CAD file, and this container is none");
   for (const auto& [file, sha256] : files) {
     if (!is_utf8(file.string()))
       refuse(file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
@@ -176,7 +176,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
     const fs::path meant = fs::weakly_canonical(fs::absolute(file), unknown);
     if (std::ranges::find(names, meant.filename().string()) == names.end() || !stands_in(meant, folder))
       continue;
-    refuse(file, fmt::format("is {}{}, and the result would take its place; give another folder with -o",
+    refuse(file, fmt::format("is {}{}, and the result would take its place; give another ‹folder›",
                              is_start ? "what the scene starts from" : "the part that the scene packs",
                              file.filename() == meant.filename() ? "" : ", by a link"));
   }
@@ -190,12 +190,12 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
       if (holds_only(there, folder, earlier)) continue;
       refuse(there,
              "is a folder with more in it than bernal wrote, or changed since, and the result would take its "
-             "place; give another folder with -o, or move it away");
+             "place; give another ‹folder›, or move it away");
     }
     if (name == "scene.toml" && is_as_written(there)) continue;
     refuse(there,
            "is no result of bernal's, or was changed since, and the result would take its place; give "
-           "another folder with -o, or remove it");
+           "another ‹folder›, or remove it");
   }
 }
 

@@ -15,7 +15,7 @@ namespace bernal {
 struct ImportFormat {
   std::string name;                  ///< "lammps"
   std::string what;                  ///< of which program, and what of it
-  std::string unit;                  ///< where that of its lengths comes from: "cm", "--unit"
+  std::string unit;                  ///< of its lengths: "cm", or from where, "‹unit›"; see `with_options`
   std::vector<std::string> options;  ///< that it alone, or with some others, has: "columns", "frame"
 };
 /// All of them, in the order in which files are held against them.

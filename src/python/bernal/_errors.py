@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 from . import _core
 
 
@@ -66,25 +64,9 @@ def unknown(name: str, where: str, known: list[str]) -> KeywordError:
 MADE_HERE = "a scene made in Python"
 
 
-def in_python(words: str) -> str:
-    """What the library says of options of the command, with the keywords that they are here."""
-
-    def keyword(option: re.Match[str]) -> str:
-        name, value = option["name"].replace("-", "_").replace("from", "format"), option["value"]
-        if not value:
-            return name
-        return f"{name}={value if name in ('frame', 'dimension') else f'[{value}]' if name == 'box' else repr(value)}"
-
-    value = r"\d+(?:[.,]\d+)*|[\w=]+(?:,[\w=-]+)+|(?:mm|um|nm|cm|m)\b"
-    words = re.sub(r" with -o\b", "", words)
-    return re.sub(rf"--(?P<name>[a-z]+(?:-[a-z]+)*)(?: (?P<value>{value}))?", keyword, words)
-
-
-
 def _made(code: str, message: str, file: str, line: int, column: int) -> Error:
     from ._surfaces import is_passing
 
-    message = in_python(message)
     kind = {"cannot_write": WriteError, "no_engine": EngineError}.get(code, InputError)
     if not file or file.endswith(MADE_HERE) or is_passing(file):
         return kind(code, message)

@@ -228,7 +228,7 @@ def import_(
     )
     core, notes = finish(job, progress)
     packing = Packing._of(core)
-    packing.notes.update({about: _errors.in_python(words) for about, words in notes.items()})
+    packing.notes.update(notes)
     packing._imported_from = name
     return packing
 
