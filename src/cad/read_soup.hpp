@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 
+#include "bernal/geometry/mesh.hpp"
 #include "cad/polygon_soup.hpp"
 
 namespace bernal::cad {
@@ -10,5 +11,8 @@ namespace bernal::cad {
 /// reader. The attempt is good. Throws Error{bad_mesh} where the file is missing, cannot be parsed, holds no
 /// faces or coordinates that are not finite.
 ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres);
+
+/// The same of a surface that stands in no file; `name` is what errors call it.
+ReadAttempt read_surface(const PolygonSurface& surface, const std::filesystem::path& name);
 
 }  // namespace bernal::cad

@@ -32,6 +32,12 @@ std::string Sha256::digits() {
   return digits.data();
 }
 
+std::string sha256_of_bytes(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.digits();
+}
+
 std::string sha256_of(const fs::path& file) { return sha256_of(std::array{file}); }
 
 std::string sha256_of(std::span<const fs::path> files) {

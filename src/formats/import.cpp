@@ -10,7 +10,6 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/domain/domain.hpp"
-#include "bernal/scene/read_scene.hpp"
 #include "bernal/version.hpp"
 #include "files/csv_lines.hpp"
 #include "files/file_kind.hpp"
@@ -141,22 +140,13 @@ std::string range_of_sizes(const std::vector<double>& radii) {
                        : fmt::format("diameters {:.6g} to {:.6g}", 2 * least, 2 * most);
 }
 
-}  // namespace
-
-ImportedPacking import_packing(const std::filesystem::path& file, const ImportOptions& options,
-                               const Monitor& monitor) {
-  check_options(options);
-  require_file(file);
-  const Reading reading{file, options, monitor};
-  const Format& format = format_of(file, options);
-  FileContents contents = format.read(reading);
-  if (monitor.stop()) throw Cancelled();
-  if (contents.size() == 0) refuse_file(file, "there are no spheres in it");
+/// The packing of what was read; `from` and `format` say where.
+ImportedPacking taken_over(FileContents contents, const Reading& reading, const std::string& from,
+                           std::string_view format) {
+  const ImportOptions& options = reading.options;
   flatten(contents, reading);
   take_sizes(contents, reading);
-  std::optional<Unit> of_container;
-  if (options.container) of_container = read_scene(*options.container).unit;
-  const Unit unit = unit_of_import(contents, reading, of_container);
+  const Unit unit = unit_of_import(contents, reading);
   move_by(contents.spheres, options.shift);
   ImportDomain place = domain_of_import(contents, unit, reading);
   move_by(contents.spheres, place.shift);
@@ -174,11 +164,11 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   packing.reason =
       fmt::format("{} read from {}, {}",
                   packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
-                  plain_text(file.filename().string()), format.name);
-  require_sensible(packing, file);
-  if (monitor.stop()) throw Cancelled();
+                  from, format);
+  require_sensible(packing, reading.file);
+  if (reading.monitor.stop()) throw Cancelled();
   made.notes.push_back(
-      {"format", std::string(format.name) + (contents.note.empty() ? std::string() : ": " + contents.note)});
+      {"format", std::string(format) + (contents.note.empty() ? std::string() : ": " + contents.note)});
   made.notes.push_back(
       {"spheres",
        fmt::format("{}, {} {}, packing fraction {:.4f}{}", grouped(packing.spheres.size()),
@@ -198,6 +188,44 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
   return made;
 }
 
+/// Throws unless these are lengths, as many for each axis as there are sizes.
+void check_spheres(const Spheres<dynamic>& spheres) {
+  for (const std::vector<double>& x : spheres.x) {
+    if (x.size() != spheres.r.size())
+      refuse_option(fmt::format("there are {} coordinates and {} radii", x.size(), spheres.r.size()));
+    const auto none = std::ranges::find_if_not(x, [](double at) { return std::abs(at) <= farthest_place; });
+    if (none != x.end())
+      refuse_option(fmt::format("sphere {}: {} is not finite or is beyond {}", none - x.begin(), *none,
+                                farthest_place));
+  }
+  const auto none = std::ranges::find_if_not(spheres.r, is_size);
+  if (none != spheres.r.end())
+    refuse_option(fmt::format("sphere {}: {}", none - spheres.r.begin(), complaint_of_size(*none, false)));
+}
+
+}  // namespace
+
+ImportedPacking import_packing(const std::filesystem::path& file, const ImportOptions& options,
+                               const Monitor& monitor) {
+  check_options(options);
+  require_file(file);
+  const Reading reading{file, options, monitor};
+  const Format& format = format_of(file, options);
+  FileContents contents = format.read(reading);
+  if (monitor.stop()) throw Cancelled();
+  if (contents.size() == 0) refuse_file(file, "there are no spheres in it");
+  return taken_over(std::move(contents), reading, plain_text(file.filename().string()), format.name);
+}
+
+ImportedPacking import_spheres(Spheres<dynamic> spheres, const ImportOptions& options,
+                               const Monitor& monitor) {
+  check_options(options);
+  check_spheres(spheres);
+  if (spheres.size() == 0) refuse_option("there are no spheres");
+  const std::filesystem::path no_file;
+  return taken_over({.spheres = std::move(spheres)}, {no_file, options, monitor}, "memory", "arrays");
+}
+
 void check_importable(const std::filesystem::path& file, const std::filesystem::path& folder) {
   require_file(file);
   require_elsewhere(file, folder);
@@ -209,8 +237,10 @@ void check_importable(const std::filesystem::path& file, const std::filesystem::
 WrittenPacking write_imported(Packing packing, const std::filesystem::path& file,
                               const std::filesystem::path& folder, WriteOptions options) {
   options.all_or_nothing = true;
-  require_elsewhere(file, folder);
-  packing.scene.start.file = file;
+  if (!file.empty()) {
+    require_elsewhere(file, folder);
+    packing.scene.start.file = file;
+  }
   check_writable(folder, packing.scene, options);
   packing.scene.start.file = folder / spheres_file_of(packing, options);
   try {

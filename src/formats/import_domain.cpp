@@ -9,7 +9,6 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
-#include "bernal/scene/read_scene.hpp"
 
 namespace bernal {
 namespace {
@@ -151,14 +150,13 @@ ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why
   return made;
 }
 
-ImportDomain domain_of_scene(FileContents& contents, Unit unit, const std::filesystem::path& file) {
-  const Scene scene = read_scene(file);
+ImportDomain domain_of_scene(FileContents& contents, Unit unit, const Scene& scene) {
   if (scene.dimension() != contents.spheres.dimension())
     throw Error(ErrorCode::bad_packing,
                 fmt::format("the spheres have {} dimensions, but the container of the scene has {}; "
                             "‹dimension=2› takes spheres of one plane for discs",
                             contents.spheres.dimension(), scene.dimension()),
-                {file.string()});
+                {scene.file.string()});
   ImportDomain made;
   made.scene.unit = scene.unit;
   made.scene.container = scene.container;
@@ -173,14 +171,14 @@ ImportDomain domain_of_scene(FileContents& contents, Unit unit, const std::files
   } else {
     made.domain = packed_domain_of(scene);
   }
-  made.words = fmt::format("{}, the container of {}", name_of(made.domain), file.string());
+  made.words = fmt::format("{}, the container of {}", name_of(made.domain),
+                           scene.file.empty() ? "a scene" : scene.file.string());
   return made;
 }
 
 }  // namespace
 
-Unit unit_of_import(const FileContents& contents, const Reading& reading,
-                    const std::optional<Unit>& otherwise) {
+Unit unit_of_import(const FileContents& contents, const Reading& reading) {
   const std::optional<Unit>& asked = reading.options.unit;
   if (contents.unit && asked && *contents.unit != *asked)
     throw Error(ErrorCode::bad_argument,
@@ -188,7 +186,7 @@ Unit unit_of_import(const FileContents& contents, const Reading& reading,
                 {reading.file.string()});
   if (contents.unit) return *contents.unit;
   if (asked) return *asked;
-  if (otherwise) return *otherwise;
+  if (reading.options.container) return reading.options.container->unit;
   throw Error(ErrorCode::bad_packing, "does not say the unit of its lengths; give it, such as ‹unit=mm›",
               {reading.file.string()});
 }

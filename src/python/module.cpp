@@ -1,5 +1,5 @@
-// bernal._core: what the package around it stands on. Scenes come as TOML and answers go as JSON, so that
-// checks, messages and names are the library's own.
+// bernal._core, the extension below the package. Scenes come as TOML and answers go as JSON, so the library
+// makes all checks, messages and names. Spheres, surfaces and meshes are arrays.
 #include <system_error>
 
 #include "bernal/core/error.hpp"
@@ -32,7 +32,8 @@ std::string_view name_of(ErrorCode code) {
   return "";
 }
 
-/// Makes the exception of an Error from code, message without the place, file, line and column.
+/// A function of the package that makes an exception of code, message without the place, file, line and
+/// column.
 py::object& exception_of_error() {
   static auto* const made = new py::object;  // outlives the interpreter
   return *made;
@@ -58,7 +59,7 @@ void translate(std::exception_ptr thrown) {
     raise(error, name_of(error.code()));
   } catch (const Cancelled&) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
-  } catch (const Ending& ending) {  // the first ends other threads without a word
+  } catch (const Ending& ending) {  // SystemExit ends other threads silently
     if (is_ending_elsewhere()) return PyErr_SetNone(PyExc_SystemExit);
     PyErr_SetString(PyExc_RuntimeError, ending.what());
   } catch (const std::system_error& error) {

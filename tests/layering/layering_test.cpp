@@ -48,10 +48,9 @@ auto found_in(const std::string& file, const std::string& text, const Look& look
   return found;
 }
 
-/// Under the real rules.
 std::vector<std::string> violations_of(const std::string& file, const std::string& text) {
-  return found_in(file, text,
-                  [](const fs::path& root) { return violations(root, read_rules(source / "src/README.md")); });
+  const auto rules = read_rules(source / "src/README.md");
+  return found_in(file, text, [&](const fs::path& root) { return violations(root, rules); });
 }
 
 TEST(Layering, PlantedOptionWordsAreFound) {

@@ -193,7 +193,7 @@ TEST(ImportMistakes, ProseSaysNeitherUnitNorWalls) {
     const Packing packing = imported(data_file(prose, "", mm)).packing;
     EXPECT_FALSE(has_walls(packing.domain)) << prose;
     EXPECT_EQ(packing.scene.unit, Unit::mm) << prose;
-    expect_refusal(data_file(prose), {"a.data", "‹unit›"});
+    expect_refusal(data_file(prose), {"a.data", "‹unit=mm›"});
   }
   // What sounds like a unit and is not taken for one is named beside the format.
   for (const auto& [title, said] :
@@ -222,7 +222,7 @@ TEST(ImportMistakes, ProseSaysNeitherUnitNorWalls) {
   expect_refusal(data_file("bed, units = ls", "", mm), {"a.data:1", "\"ls\""});
   expect_refusal(data_file("lengths in mm, units = si"), {"a.data:1", "mm"});
   const std::string rows = "1 2 3 0.5\n4 5 6 0.25\n";
-  expect_refusal({"a", "#format x_y_z_r\n# bond lengths in nm\n" + rows}, {"‹unit›"});
+  expect_refusal({"a", "#format x_y_z_r\n# bond lengths in nm\n" + rows}, {"‹unit=mm›"});
   expect_refusal({"a", "#format x_y_z_r\n# lengths in mm\n# lengths in cm\n" + rows}, {"a:3", "mm"});
   EXPECT_EQ(imported({"a", "#format x_y_z_r\n# bed; lengths in mm\n" + rows}).packing.scene.unit, Unit::mm);
 }

@@ -247,7 +247,7 @@ TEST(ImportVtk, XmlOfOtherPrograms) {
 
 TEST(ImportVtk, IsRefusedInOneLine) {
   const std::string two = piece("NumberOfPoints='2'", "1 2 3 4 5 6", ascii("radius", "0.5 0.25"));
-  expect_refusal({"a.vtu", vtu(two), {}}, {"‹unit›"});
+  expect_refusal({"a.vtu", vtu(two), {}}, {"‹unit=mm›"});
   expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ascii("radius", "0.5 0")))},
                  {"point 1", "radius 0"});
   expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 nan", ascii("radius", "0.5 1")))},
@@ -258,9 +258,9 @@ TEST(ImportVtk, IsRefusedInOneLine) {
                  {"\"x\""});
   expect_refusal(
       {"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ascii("radius", "1 1") + ascii("d", "2 2")))},
-      {"two may be", "‹columns›"});
+      {"two may be", "‹columns="});
   expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ascii("v", "1 1 1 1 1 1", 3)))},
-                 {"v:0", "‹columns›"});
+                 {"v:0", "‹columns="});
   expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ""))}, {"no sizes", "‹radius›"});
   expect_refusal({"a.vtu", vtu("")}, {"no points"});
   expect_refusal({"a.vtu", vtu(two + piece("NumberOfPoints='1'", "7 8 9", ""))}, {"array \"radius\""});

@@ -28,14 +28,14 @@ struct ImportOptions {
   /// "x=3,y=4,z=5,d=rad" by number, from 1, or by name. Radius is r, diameter d.
   std::string columns = {};
   std::optional<double> diameter = {}, radius = {};     ///< of all spheres, where the file has no sizes
-  std::optional<std::filesystem::path> radii = {};      ///< a .npy of as many numbers as there are centres
-  std::optional<Unit> unit = {};                        ///< where the file does not say it
-  std::vector<double> box = {};                         ///< edges of the box [0, a) that is meant
-  std::string periodic = {};                            ///< axes along which it repeats itself: "xy", "none"
-  std::optional<std::filesystem::path> container = {};  ///< a scene, whose container is meant
-  std::vector<double> shift = {};                       ///< added to every centre
-  std::optional<int> frame = {};                        ///< of a trajectory, from 1; else the last
-  std::optional<int> dimension = {};                    ///< 2: discs, whose third coordinates are all equal
+  std::optional<std::filesystem::path> radii = {};   ///< a .npy of as many numbers as there are centres
+  std::optional<Unit> unit = {};                     ///< where the file does not say it
+  std::vector<double> box = {};                      ///< edges of the box [0, a) that is meant
+  std::string periodic = {};                         ///< axes along which it repeats itself: "xy", "none"
+  std::optional<Scene> container = {};               ///< whose container is meant
+  std::vector<double> shift = {};                    ///< added to every centre
+  std::optional<int> frame = {};                     ///< of a trajectory, from 1; else the last
+  std::optional<int> dimension = {};                 ///< 2: discs, whose third coordinates are all equal
 };
 
 /// What has been understood of a file: "domain" and "a periodic box 3 x 4 x 5.3 mm, as the file says".
@@ -63,10 +63,15 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
                                const Monitor& monitor = {});
 inline constexpr double most_filled = 20;
 
+/// The same of spheres that a program has already, in the unit that `options` says. Throws
+/// Error{bad_argument} for columns of different lengths and for numbers that are no lengths.
+ImportedPacking import_spheres(Spheres<dynamic> spheres, const ImportOptions& options,
+                               const Monitor& monitor = {});
+
 /// `write_packing` of what was imported: its scene names the spheres that are written as its start, so that
-/// `bernal pack` goes on from there. Throws as that does, and where `file`, which it came from, would be
-/// overwritten; Cancelled, with nothing written, once the monitor says stop, since the file it came from is
-/// there still.
+/// `bernal pack` goes on from there. `file` is the one that it came from, empty where that is none. Throws as
+/// that does, and where this file would be overwritten; Cancelled, with nothing written, once the monitor
+/// says stop, since the file is there still.
 WrittenPacking write_imported(Packing packing, const std::filesystem::path& file,
                               const std::filesystem::path& folder, WriteOptions options = {});
 /// Throws what that would throw for the folder, before a large file is read.
