@@ -25,13 +25,14 @@ if(BERNAL_SANITIZE)
 endif()
 
 # Where CMAKE_UNITY_BUILD is on, the files of a folder are compiled many together: what the same headers and templates
-# cost is paid once for all of them. Where eight take 2 GB, there are no more. Names in a folder are different anyway. Kernels stay alone: what they tell the compiler about instruction sets is
-# theirs.
+# cost is paid once for all of them. Where eight take 2 GB, there are no more. Names in a folder are different anyway.
+# Kernels stay alone: what they tell the compiler about instruction sets is theirs.
 function(bernal_compile_together folder)
   set(most 16)
-  if(folder STREQUAL "cad" OR folder STREQUAL "soft")
+  if(folder MATCHES "^(cad|soft)")
     set(most 8)
   endif()
+  string(REPLACE / _ group_name ${folder})
   set(sources ${ARGN})
   list(FILTER sources EXCLUDE REGEX "kernels[.]cpp$")
   list(LENGTH sources count)
@@ -39,7 +40,7 @@ function(bernal_compile_together folder)
   set(k 0)
   foreach(source IN LISTS sources)
     math(EXPR group "${k} * ${groups} / ${count}")
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${group})
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group_name}_${group})
     math(EXPR k "${k} + 1")
   endforeach()
 endfunction()

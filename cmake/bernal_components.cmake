@@ -2,7 +2,7 @@
 # find_package() calls it, and the Debian packages of what is linked or included. Read by the build, by the packages
 # and, installed, by find_package(bernal). CONTRIBUTING.md says why each package is here; those that the build needs
 # besides are listed in cmake/debian-packages.txt.
-set(bernal_components core predict verify cad bernal studies)
+set(bernal_components core predict verify cad measure bernal studies)
 
 set(bernal_core_packages "Eigen3 3.4 NO_MODULE" "Boost 1.74" "TBB" "fmt 9")
 set(bernal_core_debian_packages libeigen3-dev libboost-dev libtbb-dev libfmt-dev libmd-dev)
@@ -13,7 +13,8 @@ set(bernal_verify_stands_on core)
 set(bernal_cad_stands_on core)
 set(bernal_cad_packages "CGAL 5.5" "assimp 5.2" "nlohmann_json 3.11" "pugixml 1.13")
 set(bernal_cad_debian_packages libcgal-dev libassimp-dev libminizip-dev libpugixml-dev nlohmann-json3-dev)
-set(bernal_bernal_stands_on core predict verify cad)
+set(bernal_measure_stands_on core verify cad)
+set(bernal_bernal_stands_on core predict verify cad measure)
 set(bernal_bernal_packages "tomlplusplus 3.3" "ZLIB 1.2")
 if(BERNAL_CUDA)
   list(APPEND bernal_bernal_packages "CUDAToolkit 12")

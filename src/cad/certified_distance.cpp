@@ -16,7 +16,7 @@ namespace {
 
 using tolerance::roundoff;
 
-/// Lengths and weights below this are no guess worth bounding with: their products might underflow.
+/// Lengths and weights below this are useless as a guess: their products might underflow.
 constexpr double least_meaning = 1e-140;
 
 using Corners = std::array<Vector<3>, 3>;

@@ -12,9 +12,9 @@ namespace {
 constexpr int cubes_along_longest_edge = 32;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double widening = 1e-6;  ///< of a cube's edge
-constexpr double slack = 0.02;     ///< of a cube's edge, by which distances may be too large
+constexpr double slack = 0.02;     ///< of a cube's edge; distances may be too large by this
 
-/// Of a point outside the bounds.
+/// For a point outside the bounds.
 constexpr ClearanceBounds beyond = {-infinity, -std::numeric_limits<double>::denorm_min()};
 
 }  // namespace
@@ -28,8 +28,8 @@ ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds
         std::clamp(static_cast<int>(std::ceil(bounds.size()[k] * per_edge_)), 1, cubes_along_longest_edge);
   clearance_.resize(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]);
 
-  // Along a row each cube bounds the search of the next and mostly knows its side. A row is one task, and so
-  // the result does not depend on the number of threads.
+  // Along a row each cube bounds the search of the next and usually knows its side. A row is one task, so the
+  // result does not depend on the number of threads.
   parallel_for(static_cast<std::size_t>(count_[1]) * count_[2], [&](std::size_t k) {
     const int row = static_cast<int>(k), y = row % count_[1], z = row / count_[1];
     double last = infinity;
@@ -80,8 +80,8 @@ Side ClearanceField::side(const Vector<3>& p) const {
   return side_by_centre(p);
 }
 
-/// Where the wall is so dense that no cube tells: along three axes, one after the other, to the centre of the
-/// cube, whose side is known. No corner of that way may be on the wall.
+/// If the wall is so dense that no neighbouring cube is decided: along three axes, one after the other, to
+/// the centre of the cube, whose side is known. No corner of that path may be on the wall.
 Side ClearanceField::side_by_centre(const Vector<3>& p) const {
   const Cell cell = cell_of(p);
   const Vector<3> center = center_of(cell[0], cell[1], cell[2]);

@@ -12,7 +12,7 @@ namespace bernal::cad {
 
 enum class Side : std::uint8_t { inside, wall, outside };
 
-/// What is known of a point's clearance without asking the tree.
+/// Bounds on a point's clearance, known without a query of the tree.
 struct ClearanceBounds {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
@@ -21,22 +21,21 @@ struct ClearanceBounds {
   bool outside() const { return upper < 0; }
 };
 
-/// The clearance at the centres of up to 32³ cubes that cover the mesh. Clearance is 1-Lipschitz, so
-/// each of them bounds it everywhere: most points of a container, and nearly all that insertion tries, are
-/// decided by one look.
+/// The clearance at the centres of up to 32³ cubes that cover the mesh. As clearance is 1-Lipschitz, each
+/// bounds it everywhere: one look-up decides most points of a container, and nearly all that insertion tries.
 ///
-/// The bounds are proven: sides are decided exactly, distances are known to a fiftieth of a cube, which saves
-/// most of the search in the middle of round parts, and bounds are widened by that and by a millionth of a
-/// cube, which is far more than rounding takes. Cost: building, one rough nearest search a cube; a look, 5
-/// ns. The tree must outlive the field.
+/// The bounds are proven: sides are decided exactly, distances are known to a fiftieth of a cube (which saves
+/// most of the search in the middle of round parts), and bounds are widened by that and by a millionth of a
+/// cube, far more than rounding. Cost: one rough nearest search a cube to build, 5 ns a look-up. The tree
+/// must outlive the field.
 class ClearanceField {
  public:
   ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds);
 
   ClearanceBounds at(const Vector<3>& p) const;
 
-  /// On which side of the wall p is, exactly: walks from p along the axes to a cube next to it whose side is
-  /// known, or to the centre of its own, and counts the crossings of the wall on that way, which is short.
+  /// The side of the wall that p is on, exactly: goes from p along an axis to a neighbouring cube whose side
+  /// is known, or to the centre of its own cube, and counts the crossings of the wall on this short path.
   Side side(const Vector<3>& p) const;
 
  private:

@@ -26,8 +26,8 @@ struct Corner {
   double scale;
 };
 
-/// What is not a sum of two doubles remains a rounded one: a part that was taken out and is in a unit whose
-/// denominator has nothing to do with the container's.
+/// The product is rounded if it is no sum of two doubles: for an obstacle in a unit whose denominator is
+/// unrelated to the container's.
 Wide times(const Wide& x, double factor) {
   const Wide high = product(factor, x.high), low = product(factor, x.low);
   const double rest = high.low + low.high;
@@ -40,8 +40,8 @@ Corner converted(const Vector<3>& v, const Ratio& ratio) {
   return corner;
 }
 
-/// Places in double, each with what is meant by it; equal places stand beside each other, in an order that
-/// follows from what is meant alone.
+/// Positions in double, each with its exact corner; equal positions are adjacent, in an order that depends on
+/// the exact corners alone.
 class Places {
  public:
   void add(const Vector<3>& place, const Corner& corner) { all_.push_back({place, corner}); }
@@ -70,7 +70,7 @@ class Places {
   std::vector<Entry> all_;
 };
 
-/// The least common multiple of the scales, where that is a double without rounding.
+/// The least common multiple of the scales, if it is an exact double.
 std::optional<double> common_scale(double first, std::span<const Mesh> others) {
   constexpr double largest = 0x1p50;
   double scale = first;

@@ -7,13 +7,13 @@
 
 namespace bernal::cad {
 
-/// States what corners of a mesh are exactly that was converted from another unit: those of its vertices that
-/// stand where a corner of the file came to be by `v *= ratio.nearest()` are that corner times the ratio;
-/// those of a part that was taken out are that part's; all others, which a repair, a plane or a cut made, are
-/// the doubles that they are. Nothing is stated where all of them are doubles anyway. Where two corners of
-/// the file came to be in one place one of them is meant. `as_written`: the corners of the file.
+/// Sets the exact corners of a mesh that was converted from another unit. A vertex at a corner of the file
+/// converted by `v *= ratio.nearest()` is exactly that corner times the ratio; a vertex of a removed obstacle
+/// is that obstacle's corner; all others, made by a repair, a plane or a cut, are exactly their doubles. Sets
+/// nothing if all are doubles. If two corners of the file coincide after conversion, one of them is taken.
+/// `as_written`: the corners in the file.
 ///
-/// Cost: O(n log n), about a microsecond a vertex; O(n) where the vertices are those of the file in its
+/// Cost: O(n log n), about a microsecond a vertex; O(n) if the vertices are those of the file in its order.
 /// order.
 void state_exactly(Mesh& mesh, std::span<const Vector<3>> as_written, const Ratio& ratio,
                    std::span<const Mesh> taken_out);

@@ -41,7 +41,7 @@ class MeshContainer final : public Container {
   }
 
   bool contains(const Vector<3>& c, double r) const override {
-    // Exact arithmetic throughout means that no shortcut is taken either.
+    // Exact arithmetic throughout takes no shortcut.
     const cad::ClearanceBounds known =
         arithmetic() == WallArithmetic::exact ? cad::ClearanceBounds{} : field_.at(c);
     if (known.lower >= r && known.inside()) return true;

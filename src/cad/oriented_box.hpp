@@ -8,18 +8,17 @@
 
 namespace bernal::cad {
 
-/// A box around a piece of wall, one axis along the mean of its triangles' normals, one along the longer way
-/// in the plane across.
+/// A box around a piece of wall, with one axis along the mean of its triangles' normals and one along the
+/// longer direction in the plane normal to that.
 ///
-/// The box along the coordinate axes of a smooth piece that is oblique to them is nearly as thick as it is
-/// wide, and that of slanting needles nearly as wide as they are long; and so from the middle of a round
-/// part, or beside an oblique face, thousands of those are nearer than the wall is. This one is as thick as
-/// the piece is curved. Single precision, widened by more than that takes and by more than distances in
-/// double are wrong; one line of the cache. Where it would be hardly smaller than the other box it knows
-/// nothing.
+/// The axis-aligned box of an oblique smooth piece is nearly as thick as it is wide, and that of slanting
+/// needles nearly as wide as they are long; so from the middle of a round part, or beside an oblique face,
+/// thousands of such boxes are nearer than the wall. The oriented box is as thick as the piece is curved. It
+/// is in single precision, widened by more than the error of that and of distances in double, and fits one
+/// cache line. If it would be hardly smaller than the other box it is left unbounded.
 class alignas(64) OrientedBox {
  public:
-  /// Around nothing that is known.
+  /// An unbounded box, which excludes nothing.
   OrientedBox() = default;
 
   /// Around the triangles of leaves, each with `triangle()`; `extent` is that of all coordinates.
@@ -69,18 +68,19 @@ class alignas(64) OrientedBox {
     half_ = ((1 + margin) * half.array() + least_margin * extent).cast<float>();
   }
 
-  /// At most the squared distance of p from every point in it.
+  /// A lower bound on the squared distance of p from every point in the box.
   double squared_distance(const Vector<3>& p) const {
     const Vector<3> along = axes_.cast<double>() * (p - center_.cast<double>());
     return ((1 - margin) * along.cwiseAbs() - half_.cast<double>()).cwiseMax(0.0).squaredNorm();
   }
 
-  /// Surely nothing in it is as near to p as `distance`, which may be negative or infinite.
+  /// Whether everything in the box is certainly farther from p than `distance`, which may be negative or
+  /// infinite.
   bool is_beyond(const Vector<3>& p, double distance) const {
     return squared_distance(p) > distance * std::abs(distance);
   }
 
-  /// At most n·(p - x) for every point x in it; n is a unit vector.
+  /// A lower bound on n·(p - x) over the points x in the box; n is a unit vector.
   double depth_along(const Vector<3>& n, const Vector<3>& p) const {
     const Vector<3> half = half_.cast<double>();
     const Vector<3> across = (axes_.cast<double>() * n).cwiseAbs();
@@ -89,8 +89,8 @@ class alignas(64) OrientedBox {
 
  private:
   static constexpr double margin = 1e-6, least_margin = 1e-12;
-  /// Larger than this share of the other box, it tells little that that one does not; both with the least
-  /// thickness that matters, a share of their length.
+  /// A box larger than this share of the other box is not worth a test. Both are compared with a least
+  /// thickness, a share of their length.
   static constexpr double worthwhile = 0.5, least_worth = 1e-3;
 
   Eigen::Matrix3f axes_ = Eigen::Matrix3f::Zero();  ///< rows

@@ -8,22 +8,18 @@
 #include <cmath>
 #include <limits>
 
-#include "cad/caged_repair.hpp"
-#include "cad/close_seams.hpp"
-#include "cad/counted.hpp"
-#include "cad/defects.hpp"
-#include "cad/diagnose_mesh.hpp"
+#include "cad/diagnose/counted.hpp"
+#include "cad/diagnose/defects.hpp"
+#include "cad/diagnose/diagnose_mesh.hpp"
+#include "cad/diagnose/self_intersections.hpp"
 #include "cad/exact_corners.hpp"
-#include "cad/hollows.hpp"
-#include "cad/interior.hpp"
-#include "cad/make_triangles.hpp"
-#include "cad/mesh_distance.hpp"
-#include "cad/obstacles.hpp"
-#include "cad/read_soup.hpp"
-#include "cad/repair_crossings.hpp"
-#include "cad/repair_holes.hpp"
-#include "cad/self_intersections.hpp"
-#include "cad/wrap.hpp"
+#include "cad/read/make_triangles.hpp"
+#include "cad/read/read_soup.hpp"
+#include "cad/repair/close_seams.hpp"
+#include "cad/repair/hollows.hpp"
+#include "cad/repair/interior.hpp"
+#include "cad/repair/obstacles.hpp"
+#include "cad/repair/repairs.hpp"
 #include "geometry/changes.hpp"
 #include "geometry/measures.hpp"
 #include "geometry/topology.hpp"
@@ -33,10 +29,10 @@ namespace {
 
 using cad::FileFacts;
 
-/// A true surface is tessellated to within this part of the smallest sphere's radius.
+/// A true surface is tessellated to within this share of the smallest sphere's radius.
 constexpr double deflection_over_radius = 0.02;
 
-/// From the file's unit to the one that is asked for.
+/// Ratio of the file's unit to the requested one.
 Ratio ratio_of(const MeshFile& options, const FileFacts& facts, std::optional<Unit> wanted) {
   const auto& of_file = facts.unit;
   const auto is_same = [&](Unit unit) { return std::abs(metres_per(unit) / of_file->metres - 1) < 1e-9; };
@@ -54,14 +50,14 @@ Ratio ratio_of(const MeshFile& options, const FileFacts& facts, std::optional<Un
   return {of_file->metres / metres_per(*wanted)};
 }
 
-/// The number, from 1, that a text is; 0 if it is none.
+/// A text as a number from 1 on; 0 if it is none.
 std::size_t number_in(const std::string& text) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size() ? number : 0;
 }
 
-/// Which of so many named or nameless parts the options choose.
+/// Marks the parts that the options choose.
 std::vector<bool> chosen_parts(const MeshFile& options, const std::vector<std::string>& names) {
   std::vector<bool> chosen(names.size(), false);
   for (const std::string& wanted : options.solids) {
@@ -87,14 +83,14 @@ std::vector<bool> chosen_parts(const MeshFile& options, const std::vector<std::s
   return chosen;
 }
 
-/// Leaves those of the file's parts that are asked for, if it tells parts apart.
+/// Keeps the chosen parts, if the file names parts.
 void keep_chosen(cad::PolygonSoup& soup, const MeshFile& options) {
   std::vector<std::string> names;
   for (const cad::Solid& solid : soup.solids) names.push_back(solid.name);
   cad::keep_solids(soup, chosen_parts(options, names));
 }
 
-/// The same where it does not: the pieces that hang together, in the order of their first faces.
+/// The same for a file without named parts: its connected pieces, in the order of their first faces.
 void keep_pieces(Mesh& mesh, const MeshFile& options) {
   const MeshTopology topology = topology_of(mesh);
   const std::vector<bool> chosen = chosen_parts(options, std::vector<std::string>(topology.components));
@@ -103,7 +99,7 @@ void keep_pieces(Mesh& mesh, const MeshFile& options) {
   keep_only(mesh, kept);
 }
 
-/// Turns the axis that points up to z, without mirroring: as Collada's conventions lead into each other.
+/// Rotates the upward axis to z, without mirroring, by the same convention as Collada.
 void turn_up(Mesh& mesh, Up up) {
   move_vertices(mesh, [&](const Vector<3>& v) -> Vector<3> {
     if (up == Up::x) return {-v[1], -v[2], v[0]};
@@ -111,7 +107,7 @@ void turn_up(Mesh& mesh, Up up) {
   });
 }
 
-/// Closes seams, unless that makes nothing better.
+/// Closes seams, unless that improves nothing.
 void close_seams_of(cad::Triangles& triangles, double tolerance, std::vector<std::string>& done) {
   const MeshTopology before = topology_of(triangles.mesh);
   if (before.closed() && cad::count_degenerate(triangles.mesh) == 0) return;
@@ -156,7 +152,7 @@ void take_interior(Mesh& mesh, const MeshFile& options, double tolerance, std::v
   }
 }
 
-/// What the user can do about the first of the report's problems, where no line was found that helps.
+/// The remedy for the first problem in the report, if no line was found that helps.
 std::string_view remedy(const MeshReport& report) {
   if (report.open_edges > 0) return "the surface has a hole or is a shell; close it in CAD";
   if (report.non_manifold_edges > 0)
@@ -166,54 +162,7 @@ std::string_view remedy(const MeshReport& report) {
   return "export a closed solid";
 }
 
-/// The repairs that are asked for, and what they did.
-struct Repairs {
-  Repairs(const MeshFile& options, const ImportFor& purpose, Mesh& surface, std::vector<std::string>& phrases)
-      : wanted(options.repair),
-        seconds(purpose.repair_seconds),
-        smallest_radius(purpose.smallest_radius),
-        largest_hole(options.largest_hole.value_or(std::numeric_limits<double>::infinity())),
-        mesh(surface),
-        done(phrases) {}
-
-  void apply(Repair repair) {
-    if (std::ranges::find(wanted, repair) == wanted.end() || mesh.triangles.empty()) return;
-    if (repair == Repair::wrap && topology_of(mesh).closed() && !cad::intersects_itself(mesh))
-      return;  // it is a wall
-    cad::RepairedMesh repaired = cad::repair_in_cage(mesh, seconds, [&] {
-      return repair == Repair::holes  ? cad::close_holes(mesh, largest_hole)
-             : repair == Repair::wrap ? cad::wrap_for_spheres(mesh, smallest_radius)
-                                      : cad::cut_out_crossings(mesh);
-    });
-    done.push_back(repaired.done);
-    if (repaired.mesh.triangles == mesh.triangles && repaired.mesh.vertices == mesh.vertices) return;
-    any = true;
-    if (repaired.mesh.triangles.empty()) return;
-    const cad::Closeness closeness{1e-4 * bounds_of(mesh).diagonal(), 0.02};
-    const double made_up = cad::farthest(repaired.mesh, mesh, closeness).at_most;
-    const double lost = cad::farthest(mesh, repaired.mesh, closeness).at_most;
-    done.push_back(
-        fmt::format("the repaired surface is at most {:.3g} away from the original, and that at most "
-                    "{:.3g} from it",
-                    cad::not_less(made_up), cad::not_less(lost)));
-    if (const std::string left = cad::what_is_left(mesh, repaired.mesh); !left.empty())
-      cautions.push_back(fmt::format(
-          "repair = [\"{}\"] lost a part: {}{}", name_of(repair), left,
-          repair == Repair::wrap ? "; what is narrower than its alpha is lost, and smaller spheres make that "
-                                   "smaller; \"self-intersections\" before it unites bodies"
-                                 : ""));
-    mesh = std::move(repaired.mesh);
-  }
-
-  const std::vector<Repair>& wanted;
-  double seconds, smallest_radius, largest_hole;
-  Mesh& mesh;
-  std::vector<std::string>& done;
-  bool any = false;  ///< it is no longer the file's surface
-  std::vector<std::string> cautions;
-};
-
-/// An obstacle's surface; its own unit counts, where it says one, else that of the container's file.
+/// Reads an obstacle; its unit is its own if stated, else that of the container's file.
 Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, const ImportFor& purpose) {
   MeshFile obstacle{.file = file,
                     .unit = options.unit,
@@ -242,17 +191,17 @@ Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, c
   throw OptionError("obstacles", fmt::format("{} {}", file.string(), why));
 }
 
-/// Closed surfaces are taken out of the container; returns them.
+/// Subtracts the obstacles from the container; returns their meshes.
 std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& purpose,
                                      std::vector<std::string>& done) {
   std::vector<Mesh> taken_out;
   if (options.obstacles.empty()) return taken_out;
   cad::Triangles container{.mesh = mesh};
-  if (!cad::diagnose_mesh(container).usable()) return taken_out;  // which the report tells
+  if (!cad::diagnose_mesh(container).usable()) return taken_out;  // the report says so
   mesh = std::move(container.mesh);                               // turned outward
   std::vector<std::filesystem::path> seen;
   for (const std::filesystem::path& file : options.obstacles) {
-    if (std::ranges::find(seen, file) != seen.end()) refuse_obstacle(file, "stands there twice");
+    if (std::ranges::find(seen, file) != seen.end()) refuse_obstacle(file, "is listed twice");
     seen.push_back(file);
     const Mesh& obstacle = taken_out.emplace_back(read_obstacle(file, options, purpose));
     switch (cad::take_out(mesh, obstacle)) {
@@ -272,8 +221,8 @@ std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const 
   return taken_out;
 }
 
-/// Cautions where the part is the wall of a vessel.
-void tell_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
+/// Adds a caution if the part is the wall of a vessel.
+void caution_about_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
   constexpr std::uint64_t most_faces = 500'000, most_pieces = 100;
   if (report.faces > most_faces || report.components > most_pieces) return;
   const std::optional<cad::Hollow> hollow = cad::hollow_of_shell(mesh, tolerance);
@@ -289,8 +238,8 @@ void tell_shell(const Mesh& mesh, double tolerance, MeshReport& report) {
 ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (options.deflection && !cad::opencascade_reads(options.file))
     throw OptionError("deflection",
-                      fmt::format("is of the surfaces of STEP, IGES and BREP, and {} holds triangles, "
-                                  "which stay as they are; take the key out",
+                      fmt::format("applies to the surfaces of STEP, IGES and BREP, but {} holds triangles; "
+                                  "take the key out",
                                   options.file.filename().string()));
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
@@ -304,7 +253,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
 
   ImportedMesh result;
   std::vector<std::string> done;
-  // A file of one part says no more than that it is whole.
+  // The only part of a file is the whole.
   const auto& parts = read.soup.solids;
   const bool is_whole = parts.size() == 1 && options.solids == std::vector{parts.front().name};
   const bool by_piece = parts.size() < 2 && !is_whole;
@@ -323,23 +272,18 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (!options.solids.empty() && by_piece) keep_pieces(mesh, options);
   if (options.largest_hole && std::ranges::find(options.repair, Repair::holes) == options.repair.end())
     throw OptionError("largest_hole", "needs repair = [\"holes\"] beside it, which closes them");
-  const bool cuts = !options.cap.empty() || options.fill_level;
-  Repairs repairs(options, purpose, mesh, done);
-  // An opening that a plane is to close is no hole.
-  if (!cuts) repairs.apply(Repair::holes);
-  repairs.apply(Repair::self_intersections);
-  if (!cuts) repairs.apply(Repair::wrap);
+  cad::Repairs repairs(options, purpose, mesh, done);
+  repairs.before_planes();
   take_interior(mesh, options, options.weld.value_or(rounding), done, repairs.cautions);
-  if (cuts) repairs.apply(Repair::holes);
-  if (cuts) repairs.apply(Repair::wrap);
+  repairs.after_planes();
   const std::vector<Mesh> taken_out = take_out_obstacles(mesh, options, purpose, done);
 
   MeshReport report = cad::diagnose_mesh(triangles);
   report.is_repaired = repairs.any;
   report.cautions = std::move(repairs.cautions);
-  if (report.usable() && !cuts && options.obstacles.empty() &&
+  if (report.usable() && !cad::has_planes(options) && options.obstacles.empty() &&
       options.interior == std::variant<Interior, Vector<3>>(Interior::solid))
-    tell_shell(mesh, options.weld.value_or(rounding), report);
+    caution_about_shell(mesh, options.weld.value_or(rounding), report);
   report.reader = std::move(read.reader);
   if (read.facts.unit) {
     report.unit = read.facts.written_in ? read.facts.written_in->name : read.facts.unit->name;

@@ -34,24 +34,24 @@ inline double distance(const Vector<3>& p, const WallTriangle& t) {
   return PreparedTriangle(t.a, t.b, t.c).offset(p).norm();
 }
 
-// The traversals below follow CGAL's concept of traversal traits: `do_intersect` says whether to enter a
-// node, `intersection` visits a leaf, `go_further` whether to go on; with priorities, the higher is entered
-// first.
+// The traversals below follow CGAL's traversal traits: `do_intersect` decides whether to enter a node,
+// `intersection` visits a leaf, `go_further` decides whether to continue; with priorities, the higher is
+// entered first.
 
-/// Passes over no triangle.
-struct Everything {
-  static bool passes_over(const Vector<3>&, const Node&, const OrientedBox&) { return false; }
-  static bool passes_over(const Vector<3>&, const Leaf&) { return false; }
-  static bool passes_over(const WallContact&) { return false; }
+/// Skips no triangle.
+struct NoFilter {
+  static bool skips(const Vector<3>&, const Node&, const OrientedBox&) { return false; }
+  static bool skips(const Vector<3>&, const Leaf&) { return false; }
+  static bool skips(const WallContact&) { return false; }
 };
 
-/// Passes over what a known contact of a ball of radius r speaks for: of a fine wall nearly everything. The
-/// known ones are nearer than all that is not passed over, but for a rounding.
-struct Unspoken {
+/// Skips what the known contacts of a ball of radius r cover, nearly everything on a fine wall. The known
+/// contacts are nearer than all that is not skipped, to rounding.
+struct Uncovered {
   std::span<const WallContact> known;
   double r;
 
-  bool passes_over(const Vector<3>& c, const Node& node, const OrientedBox& oriented) const {
+  bool skips(const Vector<3>& c, const Node& node, const OrientedBox& oriented) const {
     if (known.empty()) return false;
     const CGAL::Bbox_3& box = node.bbox();
     const Bounds<3> bounds{{box.xmin(), box.ymin(), box.zmin()}, {box.xmax(), box.ymax(), box.zmax()}};
@@ -60,18 +60,18 @@ struct Unspoken {
              speaks_for_all(contact, bounds, c, r);
     });
   }
-  bool passes_over(const Vector<3>& c, const Leaf& leaf) const {
+  bool skips(const Vector<3>& c, const Leaf& leaf) const {
     return std::ranges::any_of(known, [&](const WallContact& contact) {
       return leaf.depth_along(contact.normal, c) > spoken_depth(contact, r);
     });
   }
-  bool passes_over(const WallContact& found) const {
+  bool skips(const WallContact& found) const {
     return !(found.distance > 0) || is_spoken_for(known, found, r);
   }
 };
 
-/// Finds the triangle nearest to p and nearer than the bound, among those that `Among` does not pass over.
-template <class Among = Everything>
+/// Finds the triangle nearest to p and nearer than the bound, among those that `Among` does not skip.
+template <class Among = NoFilter>
 class NearestTraversal {
  public:
   using Priority = double;
@@ -89,29 +89,29 @@ class NearestTraversal {
     if (squared >= squared_bound_) return {false, -squared};
     const OrientedBox& oriented = tree_.oriented(node);
     squared = std::max(squared, oriented.squared_distance(p));
-    return {squared < bound_ * bound_ && !among_.passes_over(p, node, oriented), -squared};
+    return {squared < bound_ * bound_ && !among_.skips(p, node, oriented), -squared};
   }
   template <typename Iterator>
   void traverse_group(const Vector<3>& p, Iterator first, Iterator last) {
     for (; first != last; ++first) intersection(p, *first);
   }
   void intersection(const Vector<3>& p, const Leaf& leaf) {
-    // Triangles that cannot be nearer, but for a rounding, cost no more than these bounds: on a smooth wall
-    // that is nearly all of those whose boxes reach into the ball.
+    // Rejects triangles that cannot be nearer, to rounding, by cheap bounds: nearly all in the ball on a
+    // smooth wall.
     const double enough = bound_ * (1 - 4 * tolerance::roundoff);
     if (leaf.depth_along(nearest_.normal, p) >= enough || leaf.depth_along_normal(p) >= enough) return;
-    if (among_.passes_over(p, leaf)) return;
+    if (among_.skips(p, leaf)) return;
     const WallTriangle& t = leaf.triangle();
     const Vector<3> offset = PreparedTriangle(t.a, t.b, t.c).offset(p);
     const double d = offset.norm();
     if (d >= bound_) return;
     const WallContact found{d > 0 ? Vector<3>(offset / d) : Vector<3>::Zero(), d};
-    if (among_.passes_over(found)) return;
+    if (among_.skips(found)) return;
     nearest_ = found;
     set_bound(d);
   }
   double bound() const { return bound_; }
-  /// Its normal is zero where none is, or p is on the wall.
+  /// Its normal is zero if there is none, or if p is on the wall.
   const WallContact& nearest() const { return nearest_; }
 
  private:
@@ -128,7 +128,7 @@ class NearestTraversal {
 };
 
 /// Ends at the first triangle for which `clears(triangle)` is false, among those whose boxes reach into the
-/// ball of radius r; the radius is widened by the rounding of the boxes' distances.
+/// ball of radius r, widened by the rounding of the boxes' distances.
 template <typename Clears>
 class ClearsTraversal {
  public:
@@ -152,7 +152,7 @@ class ClearsTraversal {
   bool clears_ = true;
 };
 
-/// Ends where more than `most` are found.
+/// Ends once more than `most` are found.
 class WithinTraversal {
  public:
   WithinTraversal(const WallTree& tree, double reach, std::size_t most, std::vector<NearFacet>& out)
@@ -175,9 +175,9 @@ class WithinTraversal {
   std::vector<NearFacet>& out_;
 };
 
-/// How far a point at c can move along the direction, at least, before it comes within `reach` of the box;
-/// infinity if it never does. The plane through the box's nearest point, across the offset, has the box
-/// behind it: so far the plane allows.
+/// A lower bound on how far a point at c can move along the direction before it comes within `reach` of the
+/// box; infinity if it never does. The bound is that of the plane through the box's nearest point, normal to
+/// the offset, with the box behind it.
 inline double entry(const Vector<3>& c, const Vector<3>& direction, double reach, const CGAL::Bbox_3& box) {
   const Vector<3> from_box = offset(c, box);
   const double squared = from_box.squaredNorm();
@@ -187,9 +187,9 @@ inline double entry(const Vector<3>& c, const Vector<3>& direction, double reach
   return (squared - reach * std::sqrt(squared)) / approach;
 }
 
-/// The same, or farther: where one plane allows no further the next one is taken, until the point may come
-/// within `reach` or has gone `way`. A ball that rests on a wide flat wall and slides along it comes near to
-/// much of it, and reaches little.
+/// The same, iterated: when one plane allows no further movement the next is taken, until the point may come
+/// within `reach` or has gone `way`. A ball that slides along a wide flat wall is close to much of it but
+/// reaches little.
 inline double entry(const Vector<3>& c, const Vector<3>& direction, double reach, double way,
                     const CGAL::Bbox_3& box) {
   constexpr int most_planes = 8;
@@ -202,8 +202,8 @@ inline double entry(const Vector<3>& c, const Vector<3>& direction, double reach
   return t;
 }
 
-/// A sphere on its way. A box is entered if the sphere, widened by its skin, may reach it before the first
-/// contact so far. Rounding of that test is far below the half skin by which a triangle may be ignored.
+/// A moving sphere. A box is entered if the sphere, widened by its skin, may reach it before the first
+/// contact so far. Rounding of that test is far below the half skin within which a triangle may be ignored.
 class MoveTraversal {
  public:
   using Priority = double;
@@ -238,11 +238,12 @@ class MoveTraversal {
   const WallTree& tree_;
   double r_, skin_, reach_, limit_;
   Vector<3> direction_;
-  Vector<3> towards_ = Vector<3>::Zero();  ///< from the point of the first contact so far to the centre there
+  /// From the contact point of the first contact so far to the centre at that time.
+  Vector<3> towards_ = Vector<3>::Zero();
 };
 
-/// The same without a skin: a box is entered unless the sphere, widened by what rounds a distance, surely
-/// does not reach it, and every triangle in it is decided as the arithmetic promises.
+/// The same without a skin: a box is skipped only if the sphere, widened by the rounding of a distance,
+/// certainly does not reach it; every triangle in an entered box is decided as the arithmetic promises.
 class PathTraversal {
  public:
   using Priority = double;

@@ -11,9 +11,10 @@
 namespace bernal::cad {
 namespace {
 
-/// Counts the triangles that the way from p along an axis crosses, as seen along that axis: not from p itself
-/// but from p' = p + (epsilon², epsilon) in the plane across, for an infinitesimal epsilon > 0, so that no
-/// edge and no vertex is ever hit. Predicates are exact. Sees also whether p itself is on a triangle.
+/// Counts the triangles that the segment from p along an axis crosses, projected along that axis: not from p
+/// itself but from p' = p + (epsilon², epsilon) in the normal plane, for an infinitesimal epsilon > 0, so
+/// that no edge and no vertex is ever hit. Predicates are exact. Also detects whether p itself is on a
+/// triangle.
 template <typename Ignored>
 class CrossingTraversal {
  public:
@@ -48,7 +49,7 @@ class CrossingTraversal {
     }
     const int ab = turn(t.a, t.b, p);
     if (ab == 0 || turn(t.b, t.c, p) != ab || turn(t.c, t.a, p) != ab) return;
-    // p' is in the triangle's shadow, which runs counterclockwise if ab > 0.
+    // p' projects into the triangle, which runs counterclockwise if ab > 0.
     const int end_side =
         std::isinf(low_) || std::isinf(high_) ? (upwards_ ? ab : -ab) : CGAL::orientation(a, b, c, end_);
     if (start_side != end_side) outwards_ += upwards_ ? ab : -ab;
@@ -56,14 +57,14 @@ class CrossingTraversal {
   Crossing crossing() const {
     return on_wall_ ? Crossing::starts_on_wall : outwards_ % 2 != 0 ? Crossing::odd : Crossing::even;
   }
-  /// So many triangles more are crossed from their back than from their front.
+  /// Triangles crossed from back to front minus those crossed from front to back.
   int outwards() const { return outwards_; }
 
  private:
   WallKernel::Point_2 seen(const Vector<3>& p) const { return {p[u_], p[v_]}; }
 
-  /// The turn a -> b -> p' seen along the axis: that of p, and where p is in line the terms of its first and
-  /// second order in epsilon. 0 only for an edge that is seen as a point, and then its triangle as a line.
+  /// Orientation of a, b, p' in projection: that of p, and if p is collinear the terms of first and second
+  /// order in epsilon. 0 only for an edge that projects to a point, so its triangle projects to a line.
   int turn(const Vector<3>& a, const Vector<3>& b, const Vector<3>& p) const {
     if (const int s = CGAL::orientation(seen(a), seen(b), seen(p)); s != 0) return s;
     if (a[u_] != b[u_]) return a[u_] < b[u_] ? 1 : -1;
@@ -130,7 +131,7 @@ bool TriangleTree::within(const Vector<3>& c, double reach, std::vector<NearFace
 void TriangleTree::contacts(const Vector<3>& c, double r, std::vector<WallContact>& out) const {
   const std::size_t before = out.size();
   for (;;) {
-    NearestTraversal traversal(*tree_, r, 0, Unspoken{std::span(out).subspan(before), r});
+    NearestTraversal traversal(*tree_, r, 0, Uncovered{std::span(out).subspan(before), r});
     tree_->search_nearest_first(c, traversal);
     if (!(traversal.nearest().distance > 0)) return;
     out.push_back(traversal.nearest());

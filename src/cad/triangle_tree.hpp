@@ -15,37 +15,37 @@ namespace bernal::cad {
 
 class WallTree;
 
-/// The end of a way that leaves everything, for `TriangleTree::crossing`.
+/// The end of an unbounded ray, for `TriangleTree::crossing`.
 inline constexpr double endless = std::numeric_limits<double>::infinity();
 
 enum class Crossing : std::uint8_t { even, odd, starts_on_wall };
 
-/// The triangles of a closed mesh in a CGAL AABB tree, and the questions a container asks of them. All
-/// queries are const and may run in several threads.
+/// The triangles of a closed mesh in a CGAL AABB tree, and a container's queries of them. All queries are
+/// const and may run in several threads.
 ///
-/// Every search runs nearest first and shrinks as it finds: a box is entered only if it is nearer than the
-/// best triangle so far, and a moving sphere enters only boxes on the way to its first contact so far. Beside
-/// its box a node of some triangles has a disc, which tells more of a smooth wall; what it leaves out would
-/// not have changed a bit of the answer.
+/// Searches run nearest first with a shrinking bound: a box is entered only if it is nearer than the best
+/// triangle so far; a moving sphere enters only boxes before its first contact so far. Besides its box a node
+/// of several triangles has an oriented box, which is tighter on smooth walls; skipping by it does not change
+/// a bit of the answer.
 class TriangleTree {
  public:
   explicit TriangleTree(const Mesh& mesh);
   ~TriangleTree();
   TriangleTree(TriangleTree&&) noexcept;
 
-  /// Distance to the nearest triangle if that is below `bound`, else `bound`. Error: a few roundoffs of the
-  /// largest coordinate.
+  /// Distance to the nearest triangle if below `bound`, else `bound`. Error: a few roundoffs of the largest
+  /// coordinate.
   double distance(const Vector<3>& p, double bound) const;
 
-  /// The same, too large by at most `slack`: in the middle of a round part, from which everything is equally
-  /// near, the boxes of the tree then answer for thousands of triangles.
+  /// The same, too large by at most `slack`: in the middle of a round part, equally far from everything, the
+  /// boxes of the tree then replace thousands of triangles.
   double rough_distance(const Vector<3>& p, double bound, double slack) const;
 
-  /// Whether no triangle is nearer to c than r.
+  /// Whether every triangle is at least r away from c.
   bool clears(const Vector<3>& c, double r, WallArithmetic arithmetic) const;
 
-  /// Appends the triangles nearer than `reach`, nearest first; or returns false where these are more than
-  /// `most`, and appends some.
+  /// Appends the triangles nearer than `reach`, nearest first; if there are more than `most`, appends some
+  /// and returns false.
   bool within(const Vector<3>& c, double reach, std::vector<NearFacet>& out,
               std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
@@ -59,16 +59,16 @@ class TriangleTree {
   /// See Container::free_path, filtered or exact; `bound` is its `free_path_bound`.
   double free_path(const Motion& motion, double bound, WallArithmetic arithmetic) const;
 
-  /// Whether p is on the wall and, if not, whether the way from p along the axis to the coordinate `end`
-  /// crosses the wall an odd number of times, exactly. Its end must not be on the wall; infinity is a good
-  /// end. The second form looks at no triangle for which ignored(its number) holds.
+  /// Whether p is on the wall and, if not, the parity of the crossings of the wall on the segment from p
+  /// along the axis to the coordinate `end`, exactly. The end must not be on the wall; infinity is safe. The
+  /// second form skips triangles for which ignored(number) is true.
   Crossing crossing(const Vector<3>& p, int axis, double end) const;
   Crossing crossing(const Vector<3>& p, int axis, double end,
                     const std::function<bool(std::uint32_t)>& ignored) const;
 
-  /// How often the wall winds around p: on the way from p along the axis to infinity, how many triangles more
-  /// are crossed from their back than from their front, exactly. Nothing where p is on a triangle. Looks at
-  /// no triangle for which ignored(its number) holds.
+  /// Winding number of the wall around p: on the ray from p along the axis, the triangles crossed from back
+  /// to front minus those crossed from front to back, exactly. Absent if p is on a triangle. Skips triangles
+  /// for which ignored(number) is true.
   std::optional<int> winding(const Vector<3>& p, int axis,
                              const std::function<bool(std::uint32_t)>& ignored) const;
 

@@ -5,13 +5,13 @@
 namespace bernal::cad {
 namespace {
 
-/// Where a triangle is, roughly.
+/// Approximate position of a triangle.
 struct Place {
   Eigen::Vector3f center;
   std::uint32_t id;
 };
 
-/// Puts places into the order in which the tree halves its leaves.
+/// Sorts places into the order in which the tree halves its leaves.
 void arrange(std::span<Place> places) {
   constexpr std::size_t worth_a_task = 1 << 14;
   if (places.size() < 3) return;
@@ -53,7 +53,7 @@ std::vector<WallTriangle> arranged(const Mesh& mesh) {
   return triangles;
 }
 
-/// The leaves of a node stand one after the other.
+/// The leaves of a node are contiguous.
 std::span<const Leaf> leaves_of(const Node& node, std::size_t leaves) {
   const Node* first = &node;
   for (std::size_t n = leaves; n > 3; n /= 2) first = &first->left_child();
@@ -66,7 +66,7 @@ WallTree::WallTree(const Mesh& mesh) {
   const std::vector<WallTriangle> triangles = arranged(mesh);
   tree_.insert(triangles.cbegin(), triangles.cend());
   tree_.do_not_accelerate_distance_queries();
-  // Now, because queries are const and concurrent.
+  // Built now, because queries are const and concurrent.
   tree_.custom_build(tree_.traits().compute_bbox_object(), [](auto, auto, const CGAL::Bbox_3&) {});
   if (tree_.size() < 2) return;  // it has no nodes
   root_ = tree_.root_node();
@@ -78,7 +78,7 @@ WallTree::WallTree(const Mesh& mesh) {
 }
 
 void WallTree::orient(const Node& node, std::size_t leaves, double extent) {
-  constexpr std::size_t flat = 4096;  // more of them hardly are
+  constexpr std::size_t flat = 4096;  // larger nodes are hardly ever flat
   if (leaves <= flat)
     oriented_[static_cast<std::size_t>(&node - root_)] = OrientedBox(leaves_of(node, leaves), extent);
   if (leaves <= leaves_a_group) return;

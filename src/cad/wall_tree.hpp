@@ -21,12 +21,12 @@ namespace bernal::cad {
 
 using WallKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// So many triangles are looked at one by one: that is cheaper than the boxes of the last levels of the tree.
+/// Groups of this many triangles are tested one by one, which is cheaper than the boxes of the last levels.
 constexpr std::size_t leaves_a_group = 4;
 
 inline WallKernel::Point_3 to_cgal(const Vector<3>& p) { return {p[0], p[1], p[2]}; }
 
-/// The tree's leaves own their triangles, so that a query reads them in the order of the tree.
+/// The tree's leaves store their triangles, so that a query reads memory in the order of the tree.
 class Leaf {
  public:
   using Id = std::uint32_t;
@@ -39,14 +39,14 @@ class Leaf {
   const WallTriangle& triangle() const { return triangle_; }
   const Vector<3>& normal() const { return normal_; }
 
-  /// min u·(p - v) over the vertices v: a lower bound of the distance of p for every unit vector u.
+  /// min u·(p - v) over the vertices v: a lower bound on the distance of p for every unit vector u.
   double depth_along(const Vector<3>& u, const Vector<3>& p,
                      const Vector<3>& step = Vector<3>::Zero()) const {
     return std::min(std::min(u.dot(p - triangle_.a), u.dot(p - triangle_.b)), u.dot(p - triangle_.c)) +
            std::min(u.dot(step), 0.0);
   }
-  /// That bound for the better of both normals and all points between p and p + step. Where the triangle is a
-  /// needle its normal is inaccurate, and the bound still is one.
+  /// That bound for the better of both normals and all points between p and p + step. For a needle the normal
+  /// is inaccurate, but the bound still holds.
   double depth_along_normal(const Vector<3>& p, const Vector<3>& step = Vector<3>::Zero()) const {
     const double a = normal_.dot(p - triangle_.a), b = normal_.dot(p - triangle_.b),
                  c = normal_.dot(p - triangle_.c), s = normal_.dot(step);
@@ -71,17 +71,16 @@ using TreeTraits = CGAL::AABB_traits<WallKernel, Leaf>;
 using Tree = CGAL::AABB_tree<TreeTraits>;
 using Node = CGAL::AABB_node<TreeTraits>;
 
-/// A CGAL tree of the triangles of a wall, with two additions of our own.
+/// A CGAL tree of the triangles of a wall, with two additions.
 ///
-/// CGAL halves the leaves of a node along the longest axis of its box; in a wall of long needles that cuts
-/// across all of them, where nothing tells them apart. Here they are halved on the axis on which their
-/// centres differ most. And beside the box of each node that a search may enter stands a box that is
-/// oriented, where that tells more. It is found by the node's place in CGAL's array of nodes, which has no
-/// public name.
+/// CGAL halves the leaves of a node along the longest axis of its box, which cuts across long needles, where
+/// it does not separate them. Here they are halved along the axis on which their centres differ most. And
+/// each node that a search may enter has an oriented box, if that is tighter, which is found by the node's
+/// position in CGAL's array of nodes (it has no public name).
 ///
-/// What that buys, in processor time of insert, compress, shake and refill in a round vessel: CGAL's halving
-/// takes 3.2 times as long where 3000 needles stand upright, and to do without oriented boxes takes 2.5 times
-/// as long where 400 are tilted; parts of well-shaped triangles take as long either way.
+/// Benefit, in processor time of insert, compress, shake and refill in a round vessel: with CGAL's halving
+/// 3000 upright needles take 3.2 times as long; without oriented boxes 400 tilted ones take 2.5 times as
+/// long; parts of well-shaped triangles take the same time.
 class WallTree {
  public:
   explicit WallTree(const Mesh& mesh);

@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "cad/defects.hpp"
+#include "cad/diagnose/defects.hpp"
 
 namespace bernal {
 

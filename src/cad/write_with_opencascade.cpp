@@ -1,7 +1,7 @@
 #include "bernal/core/error.hpp"
-#include "cad/cage.hpp"
 #include "cad/opencascade_module.hpp"
 #include "cad/write_shapes.hpp"
+#include "process/cage.hpp"
 
 namespace bernal::cad {
 

@@ -4,7 +4,7 @@
 
 #include "cost/write_cost.hpp"
 #include "report/drawing.hpp"
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal::cost {
 namespace {

@@ -1,8 +1,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <charconv>
 #include <sstream>
 
@@ -13,6 +11,7 @@
 #include "bernal/version.hpp"
 #include "core/fnv.hpp"
 #include "cost/rounds.hpp"
+#include "files/descriptor.hpp"
 #include "files/input_file.hpp"
 #include "files/staged_folder.hpp"
 
@@ -252,16 +251,11 @@ TrialRecord::TrialRecord(std::filesystem::path file, bool afresh) : file_(std::m
 
 void TrialRecord::append(const std::string& text) const {
   // No link is followed, and no pipe waited for.
-  const int descriptor =
-      ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  const Descriptor file(
+      ::open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
   struct stat facts {};
-  bool whole = descriptor >= 0 && ::fstat(descriptor, &facts) == 0 && S_ISREG(facts.st_mode);
-  for (std::string_view left = text; whole && !left.empty();) {
-    const ssize_t written = ::write(descriptor, left.data(), left.size());
-    if (written > 0) left.remove_prefix(static_cast<std::size_t>(written));
-    whole = written > 0 || (written < 0 && errno == EINTR);
-  }
-  if (descriptor >= 0) ::close(descriptor);
+  const bool whole =
+      file.is_open() && ::fstat(file.number(), &facts) == 0 && S_ISREG(facts.st_mode) && file.write(text);
   if (!whole)
     throw Error(ErrorCode::cannot_write, "cannot be written to; make it writable, or name another folder",
                 {file_.string()});

@@ -8,9 +8,8 @@
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "cost/verdict.hpp"
-#include "report/html_text.hpp"
-#include "report/page.hpp"
 #include "report/report_style.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal::cost {
 namespace {

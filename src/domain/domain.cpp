@@ -154,20 +154,22 @@ bool has_walls(const Domain& domain) {
 }
 
 int symmetries_of(const Domain& domain) {
-  return std::visit(Overloaded{[](const Box& s) {
-                                 int shifts = 0;
-                                 for (int k = 0; k < s.dimension(); ++k) shifts += s.repeats(k);
-                                 return shifts;
-                               },
-                               [](const Cylinder& s) { return s.periodic ? 2 : 1; },
-                               [](const Sphere&) { return 3; }, [](const auto&) { return 0; }},
-                    domain);
+  return std::visit(
+      Overloaded{[](const Box& s) {
+                   int shifts = 0;
+                   for (int k = 0; k < s.dimension(); ++k) shifts += s.repeats(k);
+                   return shifts;
+                 },
+                 [](const Cylinder& s) { return s.periodic ? 2 : 1; }, [](const Sphere&) { return 3; },
+                 [](const Mesh&) { return 0; }, [](const Polygon&) { return 0; }},
+      domain);
 }
 
 bool is_periodic(const Domain& domain) {
   return std::visit(
       Overloaded{[](const Box& s) { return s.repeats(); }, [](const Cylinder& s) { return s.periodic; },
-                 [](const auto&) { return false; }},
+                 [](const Sphere&) { return false; }, [](const Mesh&) { return false; },
+                 [](const Polygon&) { return false; }},
       domain);
 }
 

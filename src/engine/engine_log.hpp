@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "engine/child.hpp"
 #include "engine/engine_files.hpp"
+#include "process/child.hpp"
 
 namespace bernal::engine {
 

@@ -1,12 +1,13 @@
 #include "engine/run_engine.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <functional>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,12 +15,15 @@
 #include "bernal/core/text.hpp"
 #include "bernal/engine/engine_error.hpp"
 #include "core/fnv.hpp"
-#include "engine/child.hpp"
 #include "engine/engine_command.hpp"
 #include "engine/engine_files.hpp"
 #include "engine/engine_log.hpp"
 #include "engine/script_parts.hpp"
 #include "files/bytes_of_file.hpp"
+#include "files/descriptor.hpp"
+#include "files/folder_tree.hpp"
+#include "files/lock.hpp"
+#include "process/child.hpp"
 
 namespace bernal::engine {
 namespace {
@@ -46,17 +50,14 @@ class EngineFolder {
                   fmt::format("the engine's folder cannot be made{}{}", failed ? ": " : "",
                               failed ? failed.message() : ""),
                   {folder_.string()});
-    lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock_ < 0 || flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-      const bool is_taken = lock_ >= 0 && errno == EWOULDBLOCK;
-      const std::string why = is_taken ? "another run is at work in it; wait for that, or give another folder"
-                                       : fmt::format("cannot be used: {}", strerror(errno));
-      if (lock_ >= 0) close(lock_);
-      throw Error(ErrorCode::cannot_write, why, {folder_.string()});
-    }
+    lock_ = Lock(FolderTree(folder_).open_folder());
+    if (!lock_.is_held())
+      throw Error(ErrorCode::cannot_write,
+                  lock_.is_elsewhere() ? "another run is at work in it; wait for that, or give another folder"
+                                       : fmt::format("cannot be used: {}", strerror(lock_.why_not())),
+                  {folder_.string()});
   }
   ~EngineFolder() {
-    close(lock_);
     std::error_code is_used;
     for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, is_used);
   }
@@ -77,7 +78,7 @@ class EngineFolder {
  private:
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> made_;  // innermost first: those that nothing came into go again
-  int lock_ = -1;
+  Lock lock_;
 };
 
 /// What decides the result: the script, the spheres and the walls, the engine and its ranks.
@@ -96,6 +97,16 @@ std::string mark_of(const SceneEngine& engine, const EngineTask& task, const std
       for (const std::uint32_t corner : triangle)
         for (const double x : mesh->vertices[corner]) hash.absorb(x);
   return fmt::format("{:016x}\n", hash.hash());
+}
+
+Child started(const ChildCall& call) {
+  try {
+    return bernal::start(call);
+  } catch (const std::system_error& failed) {
+    throw EngineError(
+        fmt::format("\"{}\" cannot be started: {}; \"executable\" and \"command\" in [engine] say what is",
+                    call.words[0], failed.code().message()));
+  }
 }
 
 using ReadDump = std::function<void(const std::filesystem::path& dump)>;
@@ -183,14 +194,35 @@ class EngineRun {
         monitor_.report({dialect_.title, static_cast<double>(*step) / std::max(1, task_.steps),
                          fmt::format("step {} of {}{}", *step, task_.steps, ranks)});
     };
-    const ChildEnd end = run_child({.words = words,
-                                    .environment = environment_of_mpi(),
-                                    .folder = folder_.path(),
-                                    .output = folder_.file(output_name)},
-                                   look);
+    const ChildEnd end = run_child(words, look);
     const auto wrong = what_is_wrong(dialect_, end, tail_of(folder_.file(dialect_.log), longest_tail),
                                      tail_of(folder_.file(output_name), longest_tail));
     if (wrong) refuse(*wrong, folder_.path());
+  }
+
+  ChildEnd run_child(const std::vector<std::string>& words, const std::function<void()>& look) const {
+    constexpr std::chrono::milliseconds between_looks(50);
+    constexpr std::chrono::seconds patience(5);
+    const std::filesystem::path said = folder_.file(output_name);
+    const Descriptor output(::open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    if (!output.is_open())
+      throw Error(ErrorCode::cannot_write, fmt::format("cannot be written: {}", strerror(errno)),
+                  {said.string()});
+    Child child = started({.words = words,
+                           .environment = environment_of_mpi(),
+                           .folder = folder_.path(),
+                           .output = output.number(),
+                           .errors = output.number(),
+                           .apart = true});
+    try {
+      for (;; std::this_thread::sleep_for(between_looks)) {
+        if (const auto end = child.ended()) return *end;
+        look();
+      }
+    } catch (...) {
+      child.stop(patience);  // its leader passes that on to ranks in groups of their own
+      throw;
+    }
   }
 
   void read() const {

@@ -43,43 +43,21 @@ void for_each_in(int folder, const Visit& visit) {
 
 }  // namespace
 
-class FolderTree::Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  int number() const { return number_; }
-  bool is_open() const { return number_ >= 0; }
-
- private:
-  int number_;
-};
-
 FolderTree::FolderTree(const fs::path& folder)
     : path_(folder),
       root_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {}
 
-FolderTree::~FolderTree() {
-  if (root_ >= 0) ::close(root_);
-}
-
-FolderTree::Descriptor FolderTree::opened(const fs::path& name) const {
-  Descriptor at(root_ < 0 ? -1 : ::openat(root_, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+Descriptor FolderTree::open_folder(const fs::path& name) const {
+  Descriptor at(root_.is_open() ? ::openat(root_.number(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1);
   for (const fs::path& part : name) {
-    if (!at.is_open() || part == "..") return Descriptor(-1);
+    if (!at.is_open() || part == "..") return Descriptor();
     at = Descriptor(::openat(at.number(), part.c_str(), as_folder));
   }
   return at;
 }
 
-FolderTree::Descriptor FolderTree::folder_of(const fs::path& name) const {
-  return name.is_absolute() || !name.has_filename() ? Descriptor(-1) : opened(name.parent_path());
+Descriptor FolderTree::folder_of(const fs::path& name) const {
+  return name.is_absolute() || !name.has_filename() ? Descriptor() : open_folder(name.parent_path());
 }
 
 FolderTree::Kind FolderTree::kind_of(const fs::path& name) const {
@@ -107,7 +85,7 @@ std::optional<std::string> FolderTree::text_of(const fs::path& name) const {
 
 std::vector<fs::path> FolderTree::files_below(const fs::path& name, const std::string& but) const {
   std::vector<fs::path> files;
-  const Descriptor folder = opened(name);
+  const Descriptor folder = open_folder(name);
   if (!folder.is_open()) return files;
   for_each_in(folder.number(), [&](const std::string& entry) {
     const Kind kind = entry == but ? Kind::missing : kind_at(folder.number(), entry);
@@ -145,7 +123,7 @@ bool FolderTree::remove_folder(const fs::path& name) const {
 }
 
 void FolderTree::remove_all(const fs::path& name) const {
-  if (const Descriptor folder = opened(name); folder.is_open()) {
+  if (const Descriptor folder = open_folder(name); folder.is_open()) {
     for_each_in(folder.number(), [&](const std::string& entry) {
       const Kind kind = kind_at(folder.number(), entry);
       if (kind == Kind::regular) ::unlinkat(folder.number(), entry.c_str(), 0);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "files/descriptor.hpp"
+
 namespace bernal {
 
 /// What stands in a folder and in the folders below it, from where no link leads out: names are relative to
@@ -16,12 +18,10 @@ class FolderTree {
   enum class Kind : std::uint8_t { missing, regular, folder, other };  ///< other: a link, a pipe, a device
 
   explicit FolderTree(const std::filesystem::path& folder);
-  ~FolderTree();
-  FolderTree(const FolderTree&) = delete;
-  FolderTree& operator=(const FolderTree&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  int descriptor() const { return root_; }
+  /// A folder of that name, or the tree's own for an empty one; where it cannot be opened errno says why.
+  Descriptor open_folder(const std::filesystem::path& name = {}) const;
 
   /// Missing too where the way there is none: a link, or no folder.
   Kind kind_of(const std::filesystem::path& name) const;
@@ -43,12 +43,10 @@ class FolderTree {
   void remove_all(const std::filesystem::path& name) const;
 
  private:
-  class Descriptor;
   Descriptor folder_of(const std::filesystem::path& name) const;
-  Descriptor opened(const std::filesystem::path& name) const;
 
   std::filesystem::path path_;
-  int root_;
+  Descriptor root_;
 };
 
 }  // namespace bernal

@@ -22,12 +22,8 @@ std::filesystem::path as_it_will_be(const std::filesystem::path& path) {
 
 OutputFile::OutputFile(std::filesystem::path path, std::filesystem::path called)
     : path_(std::move(path)), called_(called.empty() ? as_it_will_be(path_) : std::move(called)) {
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail("cannot be created");
-}
-
-OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  file_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (!file_.is_open()) fail("cannot be created");
 }
 
 void OutputFile::append(std::string_view bytes) {
@@ -37,22 +33,11 @@ void OutputFile::append(std::string_view bytes) {
 
 void OutputFile::close() {
   flush();
-  if (::fsync(descriptor_) != 0) fail("cannot be written");
-  const int descriptor = descriptor_;
-  descriptor_ = -1;
-  if (::close(descriptor) != 0) fail("cannot be written");
+  if (::fsync(file_.number()) != 0 || !file_.close()) fail("cannot be written");
 }
 
 void OutputFile::flush() {
-  const char* next = buffer_.data();
-  std::size_t left = buffer_.size();
-  while (left > 0) {
-    const ssize_t written = ::write(descriptor_, next, left);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("cannot be written");
-    next += written;
-    left -= static_cast<std::size_t>(written);
-  }
+  if (!file_.write(buffer_)) fail("cannot be written");
   buffer_.clear();
 }
 

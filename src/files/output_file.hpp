@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "files/descriptor.hpp"
+
 namespace bernal {
 
 /// How the name of a folder begins in which files stand until all of them are written.
@@ -18,9 +20,6 @@ class OutputFile {
  public:
   /// Precondition: the file does not exist. Messages name it as `called`, or as it will be.
   explicit OutputFile(std::filesystem::path path, std::filesystem::path called = {});
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
 
   void append(std::string_view bytes);
   /// Hands everything to the disk, so that a rename that follows can never reveal a file without its bytes.
@@ -32,7 +31,7 @@ class OutputFile {
 
   std::filesystem::path path_, called_;
   std::string buffer_;
-  int descriptor_ = -1;
+  Descriptor file_;
 };
 
 }  // namespace bernal

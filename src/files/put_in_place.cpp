@@ -1,15 +1,11 @@
 #include "files/put_in_place.hpp"
 
-#include <fcntl.h>
 #include <stdlib.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <sstream>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -137,31 +133,7 @@ bool is_begun(const FolderTree& tree, const char* name) {
   return tree.kind_of(fs::path(name) / replaced_name) == Kind::regular;
 }
 
-Turn::Turn(const fs::path& folder) : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  const auto end = std::chrono::steady_clock::now() + longest_wait;
-  while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK && errno != EINTR) break;
-    if (std::chrono::steady_clock::now() > end) {
-      came_ = false;
-      break;
-    }
-    std::this_thread::sleep_for(between_tries);
-  }
-}
-
-Turn::~Turn() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-int locked(const FolderTree& tree, const fs::path& name) {
-  const int descriptor =
-      ::openat(tree.descriptor(), name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
-  if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
-  const int why = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  errno = why;
-  return -1;
-}
+Lock turn_in(const fs::path& folder) { return Lock(FolderTree(folder).open_folder(), longest_wait); }
 
 fs::path new_staging(const fs::path& folder) {
   std::string pattern = (folder / fmt::format("{}XXXXXX", staging_prefix)).string();
@@ -184,10 +156,8 @@ std::vector<std::string> stagings_in(const fs::path& folder) {
 
 void remove_abandoned(const FolderTree& tree) {
   for (const std::string& name : stagings_in(tree.path())) {
-    const int lock = locked(tree, name);
-    if (lock < 0) continue;
-    tree.remove_all(name);
-    ::close(lock);
+    const Lock lock(tree.open_folder(name));
+    if (lock.is_held()) tree.remove_all(name);
   }
 }
 
@@ -205,14 +175,13 @@ void put_in_place(const FolderTree& tree, const fs::path& staging) {
 void finish_in_turn(const FolderTree& tree) {
   for (const char* name : {complete_name, placing_name}) {
     if (!is_begun(tree, name)) continue;  // it is none of ours
-    const int lock = locked(tree, name), why = errno;
-    if (lock < 0 && !is_left(tree.path() / name, why)) return;  // it is being done
+    const Lock lock(tree.open_folder(name));
+    if (!lock.is_held() && !is_left(tree.path() / name, lock.why_not())) return;  // it is being done
     Moves moves(tree);
     try {
       go_on(tree, moves);
     } catch (const Error& error) {
       moves.take_back();
-      ::close(lock);
       fail_to_write(
           "holds a result that a run was killed over, and that cannot be put into its place",
           fmt::format("{}; move that away or make the folder writable, and try again", error.what()),
@@ -221,15 +190,14 @@ void finish_in_turn(const FolderTree& tree) {
     // Under a name of its own, that whoever is killed over this blocks nobody.
     const fs::path done = new_staging(tree.path()).filename();
     if (!done.empty() && tree.remove_folder(done) && !tree.move(placing_name, done)) tree.remove_all(done);
-    ::close(lock);
   }
 }
 
 void finish_publishing(const fs::path& folder) {
   const FolderTree tree(folder);
   if (!is_begun(tree) && stagings_in(folder).empty()) return;
-  const Turn turn(folder);
-  if (!turn.came()) return;
+  const Lock turn = turn_in(folder);
+  if (turn.is_elsewhere()) return;
   finish_in_turn(tree);
   remove_abandoned(tree);
 }

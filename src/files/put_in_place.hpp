@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "files/folder_tree.hpp"
+#include "files/lock.hpp"
 
 namespace bernal {
 
@@ -32,25 +33,9 @@ inline bool is_begun(const FolderTree& tree) {
 inline constexpr std::chrono::seconds longest_wait(30);
 inline constexpr std::chrono::milliseconds between_tries(2);
 
-/// Whoever makes, moves or removes in a folder what others could take for theirs does it in turn. Where file
-/// systems know no locks everybody has it.
-class Turn {
- public:
-  explicit Turn(const std::filesystem::path& folder);
-  ~Turn();
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-
-  bool came() const { return came_; }
-
- private:
-  int descriptor_;
-  bool came_ = true;
-};
-
-/// Of an open folder in the tree, for this process; -1 where another one holds it or, as errno then says,
-/// file systems know no locks.
-int locked(const FolderTree&, const std::filesystem::path& name);
+/// Whoever makes, moves or removes in a folder what others could take for theirs does it in turn. Waits for
+/// that; it is elsewhere still where this took too long. Where file systems know no locks everybody has it.
+Lock turn_in(const std::filesystem::path& folder);
 
 /// Throws Error{cannot_write} at that path: what it cannot, and why.
 [[noreturn]] void fail_to_write(const std::string& what, const std::string& why,

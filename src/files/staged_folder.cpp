@@ -1,7 +1,5 @@
 #include "files/staged_folder.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -56,8 +54,8 @@ StagedFolder::StagedFolder(fs::path folder) : StagedFolder(std::move(folder), No
   constexpr int most_tries = 5;
   for (int k = 1;; ++k) {
     make_folders();
-    const Turn turn(folder_);
-    if (!turn.came()) fail_busy(folder_);
+    const Lock turn = turn_in(folder_);
+    if (turn.is_elsewhere()) fail_busy(folder_);
     const FolderTree tree(folder_);
     finish_in_turn(tree);
     if (is_busy(tree) && !is_begun(tree)) fail_busy(folder_);  // before a long run, not after it
@@ -71,7 +69,6 @@ StagedFolder::StagedFolder(fs::path folder) : StagedFolder(std::move(folder), No
 StagedFolder::~StagedFolder() {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
-  if (lock_ >= 0) ::close(lock_);
   if (published_) return;
   for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, ignored);  // only if empty
 }
@@ -97,7 +94,7 @@ void StagedFolder::make_folders() {
 bool StagedFolder::stage() {
   staging_ = new_staging(folder_);
   if (staging_.empty()) return false;
-  lock_ = locked(FolderTree(folder_), staging_.filename());
+  lock_ = Lock(FolderTree(folder_).open_folder(staging_.filename()));
   return true;
 }
 
@@ -141,8 +138,8 @@ std::vector<fs::path> StagedFolder::publish(const std::vector<std::string>& repl
   for (const std::string& name : replaced) list.append(line_of_replaced(name));
   list.close();
 
-  const Turn turn(folder_);
-  if (!turn.came()) fail_busy(folder_);
+  const Lock turn = turn_in(folder_);
+  if (turn.is_elsewhere()) fail_busy(folder_);
   const FolderTree tree(folder_);
   finish_in_turn(tree);
   for (const auto end = std::chrono::steady_clock::now() + longest_wait; is_busy(tree);) {

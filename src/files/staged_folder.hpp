@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "files/lock.hpp"
+
 namespace bernal {
 
 /// Whether anything has that name, a link that leads nowhere included.
@@ -20,12 +22,12 @@ bool is_name_in(const std::filesystem::path& folder, const std::filesystem::path
 /// `rename` is atomic. `publish` gives it the name of what is complete, moves the files of the earlier result
 /// out of the way and the new ones into their places, and takes that back if one of these fails. Whoever is
 /// killed before has changed nothing; whoever is killed after leaves what the next who writes there completes
-/// (`io/put_in_place.hpp`) and who reads there takes for the result (`io/unpublished.hpp`), never a new file
-/// beside an old one. Whoever else publishes in the same folder meanwhile waits for its turn, which is a lock
-/// of the folder. A file of somebody else that stands in a place is kept under another name. Names may lead
-/// into folders below, "case/system/controlDict": those that are missing are made, no link is followed, and
-/// those of an earlier result that are empty then go. What is left of the staging goes with the object, and
-/// so do folders that only it needed, and staging folders of processes that were killed. Throws
+/// (`files/put_in_place.hpp`) and who reads there takes for the result (`scene/unpublished.hpp`), never a new
+/// file beside an old one. Whoever else publishes in the same folder meanwhile waits for its turn, which is a
+/// lock of the folder. A file of somebody else that stands in a place is kept under another name. Names may
+/// lead into folders below, "case/system/controlDict": those that are missing are made, no link is followed,
+/// and those of an earlier result that are empty then go. What is left of the staging goes with the object,
+/// and so do folders that only it needed, and staging folders of processes that were killed. Throws
 /// Error{cannot_write} with the path and the system's words.
 class StagedFolder {
  public:
@@ -58,7 +60,7 @@ class StagedFolder {
 
   std::filesystem::path folder_;
   std::filesystem::path staging_;
-  int lock_ = -1;                            ///< of the staging folder, while this process lives
+  Lock lock_;                                ///< of the staging folder, while this process lives
   std::vector<std::filesystem::path> made_;  ///< folders that did not exist, outermost first
   std::vector<std::string> names_;
   bool published_ = false;

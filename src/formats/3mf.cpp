@@ -13,12 +13,12 @@
 #include "files/output_file.hpp"
 #include "formats/surface_file.hpp"
 #include "formats/templates.hpp"
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace {
 
-/// The names that 3MF has for units. Source: 3D Manufacturing Format, Core Specification 1.3, section 3.4.
+/// 3MF's names of units. Source: 3D Manufacturing Format, Core Specification 1.3, section 3.4.
 std::string_view unit_in_3mf(const Exported& file) {
   switch (file.unit()) {
     case Unit::um:
@@ -40,7 +40,7 @@ std::string_view unit_in_3mf(const Exported& file) {
               file.output.locations.whole);
 }
 
-/// An archive that is written front to back, every write checked.
+/// An archive written front to back, with every write checked.
 class ZipWriter {
  public:
   explicit ZipWriter(std::filesystem::path path)
@@ -55,7 +55,7 @@ class ZipWriter {
 
   void begin(const char* name) {
     zip_fileinfo info{};
-    info.tmz_date = {0, 0, 0, 1, 0, 1980};  // the same bytes at any time
+    info.tmz_date = {0, 0, 0, 1, 0, 1980};  // a fixed time, for the same bytes
     constexpr int quick = 1, large = 1;
     check(
         zipOpenNewFileInZip64(zip_, name, &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED, quick, large));
@@ -72,7 +72,7 @@ class ZipWriter {
     zipFile zip = zip_;
     zip_ = nullptr;
     check(zipClose(zip, nullptr));
-    const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);  // as OutputFile::close
+    const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);  // as in OutputFile::close
     const bool on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
     if (descriptor >= 0) ::close(descriptor);
     if (!on_disk) fail();

@@ -11,7 +11,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::size_t most_faces = 5000;  // of a container: sewing takes a minute
+constexpr std::size_t most_faces = 5000;  // of a container; sewing takes a minute for this many
 
 std::vector<cad::BallShape::Plane> planes_of(const std::vector<Cut>& cuts) {
   std::vector<cad::BallShape::Plane> planes;
@@ -43,8 +43,8 @@ cad::SolidShapes shapes_of(const Exported& file) {
   return shapes;
 }
 
-/// OpenCASCADE takes points nearer than 1e-7 for one, in any unit. Where a cut is off by so much, the wedge
-/// between is so wide and so high: of a ball's volume the square of 1e-7 over its radius.
+/// OpenCASCADE merges points closer than 1e-7, in any unit. A cut displaced by this leaves a wedge of that
+/// width and height: relative to a ball's volume, the square of 1e-7 over its radius.
 constexpr double confusion = 1e-7, least_error = 1e-9;
 
 void require_size(const Exported& file) {
@@ -88,7 +88,7 @@ Format cad_format(std::string_view name, std::string_view help, std::string_view
           .file = file,
           .sizes = "solids",
           .solids = true,
-          .write_and_tell = write_cad<format>};
+          .write_with_note = write_cad<format>};
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ std::uint64_t read_claimed(ForeignLines& lines) {
   return lines.whole(words.empty() ? std::string_view() : words[0], "the number of atoms");
 }
 
-/// How many rows stand below an item. Throws for one that dumps of atoms do not have.
+/// The number of rows below an item. Throws for items that dumps of atoms do not have.
 std::uint64_t rows_below(std::string_view line, std::uint64_t atoms, const ForeignLines& lines) {
   if (line.starts_with(atoms_item)) return atoms;
   if (line.starts_with(box_item)) return 3;
@@ -29,8 +29,7 @@ std::uint64_t rows_below(std::string_view line, std::uint64_t atoms, const Forei
                          bernal::quoted(line)));
 }
 
-/// Throws for a row more than its item has, whichever frame is wanted: rows of two frames may have been
-/// mixed.
+/// Throws for surplus rows of an item, whichever frame is requested: rows of two frames may have been mixed.
 int count_frames(const Reading& reading) {
   ForeignLines lines(reading);
   int frames = 0;
@@ -85,7 +84,7 @@ FileBox read_bounds(const Reading& reading, ForeignLines& lines) {
   return box;
 }
 
-/// Which of x, xs, xu, xsu the columns have. Those that are wrapped come first, scaled ones last.
+/// Finds which of x, xs, xu, xsu the columns have. Wrapped ones take precedence, scaled ones come last.
 std::vector<std::string> with_plain_axes(std::vector<std::string> names, bool& is_scaled) {
   for (const std::string_view kind : {"", "u", "s", "su"}) {
     std::vector<std::string*> found;
@@ -110,7 +109,7 @@ void unscale(FileContents& contents) {
   }
 }
 
-/// What to do about a frame that was cut off.
+/// The remedy for a frame that was cut off.
 std::string or_before(int frame) {
   return frame > 1 ? fmt::format("; ‹frame={}› is the one before", frame - 1) : "";
 }

@@ -7,7 +7,7 @@
 namespace bernal {
 namespace {
 
-/// A reader of geometries takes no comments: the unit stands nowhere in the file.
+/// Readers of this format accept no comments, so the file does not state the unit.
 void write_esys(const Exported& file, TextFile& out) {
   const Bounds<3> box = file.box();
   out.add("LSMGeometry 1.2\nBoundingBox ", row_of(box.lower), ' ', row_of(box.upper), "\nPeriodicBoundaries ",
@@ -19,7 +19,7 @@ void write_esys(const Exported& file, TextFile& out) {
   out.add("EndParticles\nBeginConnect\n0\nEndConnect\n");
 }
 
-/// The words of the file, one line after the other.
+/// The words of the file, across lines.
 class EsysWords {
  public:
   explicit EsysWords(ForeignLines& lines) : lines_(lines) {}

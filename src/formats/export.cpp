@@ -25,7 +25,7 @@ namespace {
   throw Error(ErrorCode::cannot_write, why, {file.string()});
 }
 
-/// What the packing was made from, or is.
+/// The files that the packing was made from or consists of.
 std::vector<fs::path> sources_of(const Packing& packing) {
   const Scene& scene = packing.scene;
   std::vector<fs::path> files = sources_of_scene(scene.file);
@@ -47,12 +47,12 @@ std::vector<fs::path> sources_of(const Packing& packing) {
   return files;
 }
 
-/// The file that is meant by a name, or by a link to it, whether it stands or not. Throws Error{cannot_write}
-/// where that is a folder, a device or a pipe, or no name of a file.
-fs::path file_meant_by(const fs::path& named) {
+/// The target of a name or link, whether it exists or not. Throws Error{cannot_write} for a folder, a device,
+/// a pipe, or an invalid name.
+fs::path target_of(const fs::path& named) {
   fs::path file = named;
   std::error_code unknown;
-  constexpr int most_links = 40;  // as the system has it
+  constexpr int most_links = 40;  // as in the kernel
   for (int k = 0; fs::is_symlink(file, unknown); ++k) {
     if (k == most_links) refuse_target(named, "is a link that leads to itself; give the name of a file");
     const fs::path target = fs::read_symlink(file, unknown);
@@ -66,9 +66,9 @@ fs::path file_meant_by(const fs::path& named) {
   return file;
 }
 
-/// Throws Error{cannot_write} where one of the files of an output in the folder would take the place of what
-/// the packing is read or made from, of a file of any result, or, being one that goes with the file that was
-/// named, of what bernal did not write. Precondition: the output is complete.
+/// Throws Error{cannot_write} if one of the output's files in the folder would replace a source of the
+/// packing, a file of any result, or (for files that go with the named one) a file that bernal did not write.
+/// Precondition: the output is complete.
 void require_free_places(const Packing& packing, const Output& output, const fs::path& folder) {
   const std::vector<std::string> names = files_of(output);
   const std::vector<fs::path> sources = sources_of(packing);
@@ -88,7 +88,7 @@ void require_free_places(const Packing& packing, const Output& output, const fs:
       of_others.push_back(file);
   }
   if (of_others.empty()) return;
-  // A script that was changed no longer answers for those that go with it.
+  // A modified script no longer vouches for the files that go with it.
   std::ranges::stable_partition(of_others, [](const fs::path& file) { return has_seal(file); });
   refuse_target(of_others[0],
                 fmt::format("goes with {}, and what stands there bernal did not write, or somebody "
@@ -96,7 +96,7 @@ void require_free_places(const Packing& packing, const Output& output, const fs:
                             names[0]));
 }
 
-/// The domain with its walls moved out of reach, so that a certificate is one of pairs.
+/// The domain with its walls moved out of reach, so that a certificate concerns pairs only.
 Domain without_walls(const Domain& domain) {
   const Bounds<dynamic> bounds = bounds_of<dynamic>(domain);
   Box box{bounds.lower, bounds.size(), std::vector<bool>(static_cast<std::size_t>(dimension_of(domain)))};
@@ -113,15 +113,15 @@ Domain without_walls(const Domain& domain) {
   return box;
 }
 
-/// Of pairs, whatever the walls.
+/// Over pairs, ignoring walls.
 double largest_overlap(const Spheres<dynamic>& spheres, const Domain& domain, const Monitor& monitor) {
   const Certificate certificate = certify(spheres, without_walls(domain), {.monitor = monitor});
   if (certificate.cancelled) throw Cancelled();
   return certificate.max_overlap;
 }
 
-/// Of a packing that nobody certified, or whose scene allows it; else nothing.
-std::string words_on_overlap(const Packing& packing, double overlap) {
+/// For an uncertified packing, or one whose scene allows overlap; else empty.
+std::string overlap_text(const Packing& packing, double overlap) {
   if (!(overlap > 0)) return {};
   return fmt::format("the packing itself overlaps: largest {:.2g} of the sum of two radii, {}", overlap,
                      overlap <= packing.scene.overlap
@@ -129,8 +129,8 @@ std::string words_on_overlap(const Packing& packing, double overlap) {
                          : "and bernal verify says where");
 }
 
-/// What solids and surfaces cannot be right with. Walls matter where they are made too.
-void take_faults(Exported& file, const Format& format, const Monitor& monitor) {
+/// Records faults that solids and surfaces cannot represent. Walls count only for formats that include them.
+void find_faults(Exported& file, const Format& format, const Monitor& monitor) {
   const Packing& packing = file.packing;
   const bool with_walls = format.sizes == "solids" || format.sizes == "triangles";
   const Certificate certificate = certify(
@@ -142,9 +142,9 @@ void take_faults(Exported& file, const Format& format, const Monitor& monitor) {
   file.protrusion = -certificate.min_wall_gap;
 }
 
-std::string words_on_faults(const Exported& file) {
+std::string faults_text(const Exported& file) {
   std::string words;
-  if (const std::string itself = words_on_overlap(file.packing, file.overlap); !itself.empty())
+  if (const std::string itself = overlap_text(file.packing, file.overlap); !itself.empty())
     words += "; " + itself;
   if (file.protruding > 0)
     words += fmt::format(
@@ -154,15 +154,15 @@ std::string words_on_faults(const Exported& file) {
   return words;
 }
 
-/// Whether its numbers are others than those of the packing.
+/// Whether its numbers differ from those of the packing.
 bool is_rounded(const Exported& file, const Format& format) {
   return format.precision == Precision::as_float || file.unit() != file.packing.scene.unit || file.wrapped;
 }
 
-/// Of touching spheres, the most that rounding makes: each coordinate is rounded up to three times, when it
-/// is converted, moved to the middle and put into the period, by half an epsilon of the farthest c there is,
-/// and so is the period: the distance of two loses up to 4 sqrt(3) epsilon c, of which the radii are at least
-/// 2 r.
+/// The largest overlap that rounding can cause between touching spheres: each coordinate is rounded up to
+/// three times (conversion, shift to the middle, wrapping), by half an epsilon of the largest coordinate c,
+/// and so is the period; so the distance of two spheres loses up to 4 sqrt(3) epsilon c, relative to radii of
+/// at least 2 r together.
 double most_by_rounding(const Packing& packing, const Format& format) {
   const double epsilon = format.precision == Precision::as_float ? std::numeric_limits<float>::epsilon()
                                                                  : std::numeric_limits<double>::epsilon();
@@ -173,11 +173,11 @@ double most_by_rounding(const Packing& packing, const Format& format) {
   return epsilon * (4 * farthest / smallest + 1);
 }
 
-/// What rounding did, in words; what the packing overlaps itself is not put down to it.
-std::string words_on_rounding(const Exported& file, const Format& format, const Monitor& monitor) {
+/// The effect of rounding, in words; overlaps of the packing itself are not attributed to it.
+std::string rounding_text(const Exported& file, const Format& format, const Monitor& monitor) {
   if (!is_rounded(file, format)) {
     const std::string itself =
-        words_on_overlap(file.packing, largest_overlap(file.packing.spheres, file.packing.domain, monitor));
+        overlap_text(file.packing, largest_overlap(file.packing.spheres, file.packing.domain, monitor));
     const std::string kept = file.contacts.changed == 0
                                  ? "the numbers of spheres.csv, not rounded"
                                  : "centres are the numbers of spheres.csv, not rounded";
@@ -188,8 +188,8 @@ std::string words_on_rounding(const Exported& file, const Format& format, const 
   const double overlap = largest_overlap(file.spheres, file.domain, monitor);
   if (!(overlap > 0)) return fmt::format("no overlap after rounding to {}", to);
   if (overlap > most_by_rounding(file.packing, format))
-    if (const std::string itself = words_on_overlap(
-            file.packing, largest_overlap(file.packing.spheres, file.packing.domain, monitor));
+    if (const std::string itself =
+            overlap_text(file.packing, largest_overlap(file.packing.spheres, file.packing.domain, monitor));
         !itself.empty())
       return itself;
   std::string remedy;
@@ -206,22 +206,22 @@ std::string spheres_in(const Exported& file) {
                      name_of(file.unit()));
 }
 
-/// `told` by whoever wrote the file; or empty.
-std::string note_of(const Exported& file, const Format& format, const std::string& told,
+/// `written` is the writer's own description, or empty.
+std::string note_of(const Exported& file, const Format& format, const std::string& written,
                     const Monitor& monitor) {
   const std::string remark = format.remark ? format.remark(file) : "";
   const std::string contacts =
-      file.contacts.treatment == ContactTreatment::none ? "" : "; " + words_on(file.contacts);
-  if (format.note || !told.empty())
-    return fmt::format("{}, {}{}{}{}", spheres_in(file), format.note ? format.note(file) : told, contacts,
-                       words_on_faults(file), remark);
+      file.contacts.treatment == ContactTreatment::none ? "" : "; " + contact_text(file.contacts);
+  if (format.note || !written.empty())
+    return fmt::format("{}, {}{}{}{}", spheres_in(file), format.note ? format.note(file) : written, contacts,
+                       faults_text(file), remark);
   const OutputTable& table = table_of(file.output);
   std::string note =
       fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
   if (table.keys.find("density")) note += fmt::format(", density {} kg/m3", file.output.density);
   if (table.keys.find("types"))
     note += fmt::format(", {} {}", file.type_count, file.type_count == 1 ? "type" : "types");
-  return note + contacts + "; " + words_on_rounding(file, format, monitor) + remark;
+  return note + contacts + "; " + rounding_text(file, format, monitor) + remark;
 }
 
 }  // namespace
@@ -231,18 +231,18 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
   const Interruptible interruptible(monitor);
   const Format& format = format_of(output);
   Exported file = exported(packing, output, monitor);
-  if (format.note || format.write_and_tell) take_faults(file, format, monitor);
-  std::string told;
+  if (format.note || format.write_with_note) find_faults(file, format, monitor);
+  std::string written;
   if (format.write_text) {
     TextFile out(staged.add(file.output.file.string()));
     format.write_text(file, out);
     out.close();
-  } else if (format.write_and_tell) {
-    told = format.write_and_tell(file, staged);
+  } else if (format.write_with_note) {
+    written = format.write_with_note(file, staged);
   } else {
     format.write(file, staged);
   }
-  return note_of(file, format, told, monitor);
+  return note_of(file, format, written, monitor);
 }
 
 WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,
@@ -250,7 +250,7 @@ WrittenExport write_export(const Packing& packing, const Output& asked, const fs
   if (table_of(asked).is_folder && stands(file))
     throw Error(ErrorCode::cannot_write, "stands there already; give another ‹file›, or move it away",
                 {file.string()});
-  const fs::path meant = file_meant_by(file);
+  const fs::path meant = target_of(file);
   Output output = asked;
   output.file = meant.filename();
   complete_output(output, packing.scene);

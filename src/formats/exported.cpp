@@ -15,7 +15,7 @@
 namespace bernal {
 namespace {
 
-/// `mapping.of` of each kind of domain.
+/// `mapping.of` for each kind of domain.
 struct MappedDomain {
   const Mapping& mapping;
 
@@ -52,8 +52,8 @@ struct MappedDomain {
   }
 };
 
-/// Into the half-open period, where programs look for centres: what rounding put on its end, and what a file
-/// of another hand has beyond.
+/// Moves centres into the half-open period that programs expect: those that rounding put on its end, and
+/// those of other programs' files beyond it.
 void wrap_into_periods(Exported& made, bool centred) {
   const auto* box = std::get_if<Box>(&made.domain);
   const auto periods = made.periods();
@@ -72,7 +72,7 @@ void wrap_into_periods(Exported& made, bool centred) {
   }
 }
 
-/// What the output asks for about contacts, of the numbers that the file will hold.
+/// Treats contacts as the output requests, on the numbers that the file will hold.
 void treat_contacts(Exported& made, const Format& format, const Monitor& monitor) {
   const Output& output = made.output;
   if (format.solids) {
@@ -89,8 +89,8 @@ void treat_contacts(Exported& made, const Format& format, const Monitor& monitor
   }
 }
 
-/// The type of every radius, from 1, and how many there are: classes of equal width if `asked`; else one for
-/// every radius where at most ten occur, or one for all.
+/// The type of every radius, from 1, and their number: classes of equal width if `asked`; else one type a
+/// radius if there are at most ten radii, otherwise one.
 std::uint32_t take_types(std::span<const double> radii, const std::optional<int>& asked,
                          std::vector<std::uint32_t>& types) {
   constexpr std::size_t most_by_radius = 10;
@@ -152,7 +152,7 @@ Exported exported(const Packing& packing, const Output& output, const Monitor& m
                   },
                   [&](double length) { return rounded(converted(length)); }};
   made.domain = mapping.of(packing.domain);
-  // A format of single precision holds diameters, and half of one is exact.
+  // A format of single precision holds diameters, and half of a diameter is exact.
   mapping.length = [&](double radius) { return 0.5 * rounded(converted(2 * radius)); };
   mapping.map(made.spheres);
   for (std::size_t i = 0; i < made.size(); ++i)

@@ -13,7 +13,7 @@
 namespace bernal {
 namespace {
 
-/// X is the element that is none, to readers that know elements; so types have a column of their own.
+/// X is the name of no element, for readers that know elements; so types have a column of their own.
 void write_extxyz(const Exported& file, TextFile& out) {
   const Bounds<3> box = file.box();
   const Vector<3> size = box.size();
@@ -33,8 +33,8 @@ void write_extxyz(const Exported& file, TextFile& out) {
 
 using Keys = std::map<std::string, std::string, std::less<>>;
 
-/// key=value, key="value" and words without a value, by keys in lower case. Throws for a quotation mark that
-/// stays open and for a key that stands twice with two values.
+/// key=value, key="value" and words without a value, with keys in lower case. Throws for an unclosed
+/// quotation mark and for a key with two different values.
 Keys keys_in(const ForeignLines& lines) {
   std::string_view line = lines.line();
   Keys keys;
@@ -73,10 +73,10 @@ std::vector<double> numbers_of(const Keys& keys, std::string_view key, const For
   return numbers;
 }
 
-/// Cells that were turned or made from lengths and angles have such parts of an edge where 0 is meant.
+/// Cells that were rotated or made from lengths and angles have such residues instead of 0.
 constexpr double rounding_of_edge = 1e-12;
 
-/// Of Lattice, Origin and pbc.
+/// From Lattice, Origin and pbc.
 std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, const ForeignLines& lines) {
   const std::vector<double> lattice = numbers_of(keys, "lattice", lines);
   std::vector<double> origin = numbers_of(keys, "origin", lines);
@@ -92,7 +92,7 @@ std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, con
   if (lattice.size() != 9) lines.fail("Lattice needs nine numbers");
   if (origin.empty()) origin.resize(3);
   if (origin.size() != 3) lines.fail("Origin needs three numbers");
-  FileBox box{origin, origin, std::vector<AxisEnd>(3, AxisEnd::period)};  // as ASE has it, if nothing is said
+  FileBox box{origin, origin, std::vector<AxisEnd>(3, AxisEnd::period)};  // ASE's default
   for (std::size_t k = 0; k < 9; ++k) {
     if (k % 4 == 0) box.upper[k / 4] += lattice[k];
     const double edge = lattice[k / 3 * 4];
@@ -114,7 +114,7 @@ std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, con
   return box;
 }
 
-/// Of the key "unit" or "units".
+/// From the key "unit" or "units".
 std::optional<Unit> unit_of_keys(const Keys& keys, const ForeignLines& lines) {
   std::optional<Unit> unit;
   for (const std::string_view key : {"unit", "units"}) {
@@ -125,7 +125,7 @@ std::optional<Unit> unit_of_keys(const Keys& keys, const ForeignLines& lines) {
   return unit;
 }
 
-/// The columns that "species:S:1:pos:R:3:radius:R:1" names, one by one.
+/// The columns listed by "species:S:1:pos:R:3:radius:R:1".
 std::vector<std::string> property_columns(const Keys& keys, const ForeignLines& lines) {
   const auto said = keys.find("properties");
   if (said == keys.end()) return {"species", "x", "y", "z"};
@@ -148,7 +148,7 @@ std::vector<std::string> property_columns(const Keys& keys, const ForeignLines& 
   return columns;
 }
 
-/// The line that says how many lines a frame has; false at the end of the file.
+/// The line with the number of atoms in a frame; false at the end of the file.
 bool read_count(ForeignLines& lines, std::uint64_t& count) {
   while (lines.next()) {
     const auto words = lines.words();
@@ -200,7 +200,7 @@ FileContents read_extxyz(const Reading& reading) {
   return contents;
 }
 
-/// A number alone in the first line, and a second that has keys, or the name.
+/// A number alone in the first line, and keys in the second; or the file's name.
 bool is_extxyz(const FileBeginning& file) {
   const std::string_view bytes = file.bytes;
   const std::size_t end = bytes.find('\n');

@@ -65,7 +65,7 @@ double ForeignLines::number(std::string_view field, std::string_view column) con
   return read_number(field, column);
 }
 
-bool ForeignLines::is_row_left_out(std::span<const std::string_view> fields, std::size_t in_row) const {
+bool ForeignLines::is_commented_row(std::span<const std::string_view> fields, std::size_t in_row) const {
   constexpr std::string_view marks = "#%!/";
   if (fields.empty() || in_row < 2) return false;
   const std::string_view first = stripped(fields[0], " \t");
@@ -82,7 +82,7 @@ bool ForeignLines::is_row_left_out(std::span<const std::string_view> fields, std
       bernal::quoted(first)));
 }
 
-void ForeignLines::refuse_what_a_spreadsheet_gave_up() const {
+void ForeignLines::refuse_spreadsheet_errors() const {
   constexpr std::string_view errors[] = {"#N/A",  "#DIV/0!", "#NULL!",  "#NAME?", "#REF!",
                                          "#NUM!", "#VALUE!", "#SPILL!", "#CALC!"};
   std::vector<std::string_view> fields;
@@ -253,7 +253,7 @@ int frame_of(const Reading& reading, int frames) {
   return wanted;
 }
 
-std::string complaint_of_size(double length, bool is_diameter) {
+std::string size_error(double length, bool is_diameter) {
   return fmt::format("the {} {} is not a length from {} to {}", is_diameter ? "diameter" : "radius", length,
                      smallest_length, farthest_place);
 }

@@ -13,7 +13,7 @@
 
 namespace bernal {
 
-// Each in the file of its name. Files are held against what reads them in this order; the last takes any.
+// Each is in the file of its name. Files are tested by the readers in this order; the last accepts any.
 Format vtk_format();
 Format dump_format();
 Format lammps_format();
@@ -54,7 +54,7 @@ const std::vector<Format>& formats() {
   return all;
 }
 
-/// Those that are read, in the order in which files are held against them.
+/// The readers, in the order in which they are tried on a file.
 const std::vector<const Format*>& readers() {
   static const auto all = [] {
     std::vector<const Format*> made;
@@ -80,7 +80,7 @@ OutputTable table_for(const Format& format) {
   return made;
 }
 
-/// Of a word of a command line; nothing where it is none of that type.
+/// A word of a command line as a value; absent if it is not of that type.
 std::optional<schema::Value> value_of_word(const schema::Key& key, const std::string& word) {
   const auto number = [&](auto value) -> std::optional<schema::Value> {
     const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -103,7 +103,7 @@ std::optional<schema::Value> value_of_word(const schema::Key& key, const std::st
 
 [[noreturn]] void refuse_word(const std::string& what) { throw Error(ErrorCode::bad_argument, what); }
 
-/// Of a list of formats or tables, that of the name.
+/// The entry with this name in a list of formats or tables.
 template <class List, class Name>
 const auto& named(const List& all, std::string_view name, const Name& name_of) {
   std::vector<std::string_view> names;
@@ -123,7 +123,7 @@ FileBeginning beginning_of(const std::filesystem::path& file) {
   return beginning;
 }
 
-/// What no format is, by its first bytes, and what to do about it.
+/// Contents that no format has, by their first bytes, with the remedy.
 struct Wrapping {
   std::string_view bytes, words;
 };
@@ -137,7 +137,7 @@ constexpr Wrapping wrappings[] = {
     {"\xFF\xFE", "is text in UTF-16; save it in UTF-8, with iconv -f UTF-16 -t UTF-8"},
     {"\xFE\xFF", "is text in UTF-16; save it in UTF-8, with iconv -f UTF-16 -t UTF-8"},
 };
-/// Of text that is no table.
+/// Text that is not a table.
 constexpr Wrapping no_tables[] = {
     {"<", "is XML or HTML, and none that is known; save a table, such as CSV, or VTK points (.vtp)"},
     {"{", "is JSON, which is not read; save a table, such as CSV"},
@@ -154,7 +154,7 @@ void refuse_wrapped(const FileBeginning& file, std::span<const Wrapping> kinds) 
 
 bool has_zero_byte(const FileBeginning& file) { return file.has(std::string_view("\0", 1)); }
 
-/// LAMMPS begins a binary dump with the length of this word, which is negative, or with a step.
+/// LAMMPS begins a binary dump with the length of this word, negative, or with a step.
 bool is_binary_dump(std::string_view bytes) {
   const std::string start = in_lower_case(bytes.substr(0, 64));
   return start.find("dumpcustom") != start.npos || start.find("dumpatom") != start.npos;

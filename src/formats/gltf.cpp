@@ -6,25 +6,25 @@
 
 #include "formats/surface_file.hpp"
 #include "report/legend.hpp"
-#include "report/palette.hpp"
 #include "surfaces/icosphere.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace {
 
-/// A renderer's error in scale · corner + translation, over the shift: two roundings of numbers no larger
-/// than the largest coordinate, one of decimals, and one to spare.
+/// Bound on a renderer's error in scale · corner + translation, relative to the shift: two roundings of
+/// numbers no larger than the largest coordinate, one of decimals, and one spare.
 constexpr double renderer_shifts = 4.01;
 
-/// The primitives of the mesh that is written out: the container and the spheres of a colour, in its order.
+/// The primitives of the explicit mesh: the container and the spheres of each colour, in its order.
 struct Primitive {
   int colour_class = -1;  ///< -1: the container
   std::uint64_t first = 0, indices = 0;
 };
 
-/// What stands in the file: one icosphere for all whole spheres, and triangles of the rest.
+/// The contents of the file: one icosphere for all whole spheres, and triangles for the rest.
 struct Written {
-  std::vector<std::uint32_t> instances, triangles;  ///< spheres, these by colour class
+  std::vector<std::uint32_t> instances, triangles;  ///< spheres; the latter by colour class
   std::vector<float> scales;                        ///< of instances
   std::vector<FloatPoint> corners;                  ///< of the icosphere
   const Icosphere* icosphere = nullptr;
@@ -38,9 +38,9 @@ FloatPoint center_of(const Exported& file, std::uint32_t i) {
           static_cast<float>(file.coordinate(2, i))};
 }
 
-/// The largest scale with which what any renderer makes of the icosphere lies where triangles would; 0 if
-/// there is none. Proven: the ball around the rounded centre, and what a renderer is off, within the ball
-/// that certificates are about.
+/// The largest scale at which any renderer's icosphere stays within the allowed triangles; 0 if there is
+/// none. Proven: the ball around the rounded centre, with the renderer's error, lies within the ball of the
+/// certificate.
 float scale_of(const Surfaces& surfaces, std::uint32_t sphere, const FloatPoint& center) {
   constexpr double longest_corner = 1 + 0x1p-22;  // of unit vectors rounded to single precision
   const Piece& piece = surfaces.spheres().first_piece(sphere);
@@ -90,7 +90,7 @@ Written plan(const Exported& file, const Surfaces& surfaces, const SizeScale& si
   return made;
 }
 
-/// Elements of a list in JSON.
+/// The elements of a JSON list.
 struct List {
   std::string text;
   std::size_t size = 0;
@@ -141,7 +141,7 @@ std::string json_of(const Exported& file, const Surfaces& surfaces, const SizeSc
   };
   for (int c = 0; c < colour_classes; ++c)
     materials.add(material_of(size_colour((c + 0.5) / colour_classes), 1));
-  // Seen with spheres in it, glass; alone, a surface.
+  // Glass if spheres are inside, else an opaque surface.
   const bool glass = file.output.surface == SurfaceChoice::all;
   materials.add(material_of({0.62, 0.70, 0.80}, glass ? 0.2 : 1.0));
 
@@ -150,7 +150,7 @@ std::string json_of(const Exported& file, const Surfaces& surfaces, const SizeSc
     if (!children.empty()) children += ',';
     fmt::format_to(std::back_inserter(children), "{}", nodes.add(node));
   };
-  // glTF's y points up, and bernal's z: (x, y, z) becomes (x, z, -y), column by column.
+  // In glTF y points up, in bernal z: (x, y, z) becomes (x, z, -y), column by column.
   nodes.add("");
   if (written.icosphere) {
     FloatPoint low = written.corners[0], high = low;

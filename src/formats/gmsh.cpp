@@ -14,11 +14,11 @@
 namespace bernal {
 namespace {
 
-constexpr double near_gap = 1e-3;  // below what meshes of the usual sizes can fail
+constexpr double near_gap = 1e-3;  // gaps below this can make usual meshes fail
 
-/// OpenCASCADE takes what is nearer than 1e-7 for one point, in whatever unit, and loses digits in large
-/// numbers: a domain whose diagonal is not between 1 and 1000 is built in lengths of its own, ten to this
-/// power of the file's unit, in which it is between 10 and 100; its mesh is written in the unit.
+/// OpenCASCADE merges points closer than 1e-7 in any unit, and loses digits of large numbers: a domain with a
+/// diagonal not between 1 and 1000 is built in a model unit, a power of ten of the file's, in which it is
+/// between 10 and 100; its mesh is written in the file's unit.
 int exponent_of_model(const Domain& domain) {
   constexpr double smallest = 1, largest = 1e3;
   const double diagonal = bounds_of(domain).diagonal();
@@ -26,8 +26,8 @@ int exponent_of_model(const Domain& domain) {
   return static_cast<int>(std::floor(std::log10(diagonal))) - 1;
 }
 
-/// The same in lengths of ten to the power of `exponent`; whatever has no length stays. Ten to a negative
-/// power is no double: by whole numbers nothing but the result is rounded.
+/// Converts to lengths of ten to the power of `exponent`; other quantities stay. A negative power of ten is
+/// no double: with whole numbers only the result is rounded.
 Exported in_length_of_model(const Exported& file, int exponent) {
   const double times = exponent < 0 ? std::pow(10, -exponent) : 1,
                by = exponent > 0 ? std::pow(10, exponent) : 1;
@@ -62,9 +62,9 @@ Exported in_length_of_model(const Exported& file, int exponent) {
   return made;
 }
 
-/// Spheres that are as they were and overlap or cross the walls, of which no solids are made one by one; or
-/// empty.
-std::string trouble_of(const Exported& file) {
+/// The reason why no solids can be made: untreated spheres that overlap or cross the walls; empty if there is
+/// none.
+std::string reason_against_solids(const Exported& file) {
   const ContactTreatment treatment = file.contacts.treatment;
   if (treatment != ContactTreatment::none && treatment != ContactTreatment::bridge) return {};
   if (file.overlap > 0) return "spheres overlap, and contact gap, shrink or cap makes room";
@@ -72,15 +72,15 @@ std::string trouble_of(const Exported& file) {
   return {};
 }
 
-/// Whether spheres that nobody treated come so near each other or the walls that meshing is doubtful.
+/// Whether untreated spheres come so close to each other or the walls that meshing is doubtful.
 bool comes_near(const Exported& file) {
   return file.contacts.treatment == ContactTreatment::none &&
          (!near_pairs(file.spheres, file.domain, near_gap).empty() ||
           !near_walls(file.spheres, file.domain, near_gap, nullptr).empty());
 }
 
-/// The turn about a sphere's centre, an axis and an angle, that brings its seam to a better place, see
-/// `Seam`. Spheres of Gmsh have their poles along z and their meridian towards x.
+/// The rotation about a sphere's centre that moves its seam to a better place, see `Seam`. Gmsh's spheres
+/// have their poles along z and their meridian towards x.
 Eigen::AngleAxisd turn_to(const Seam& seam) {
   Eigen::Matrix3d to;
   to.col(0) = seam.meridian;
@@ -95,7 +95,7 @@ bool has_end(const std::vector<Cut>& cuts) {
 
 std::string numbers(const Vector<3>& v) { return row_of(v, ", "); }
 
-/// What makes volume 1, as the script has it.
+/// The Python expression that makes volume 1.
 struct PythonDomain {
   std::string operator()(const Box& box) const {
     return fmt::format("(\"Box\", {}, {})", numbers(box.corner), numbers(box.size));
@@ -131,7 +131,7 @@ std::string pieces_in_python(const Exported& file) {
   return text;
 }
 
-/// What takes caps off spheres: cylinders on the planes of the cuts, wide and high enough for the caps.
+/// The cylinders that cut caps off spheres, on the planes of the cuts, wide and high enough for the caps.
 std::string caps_in_python(const Solids& solids) {
   std::string text;
   for (std::size_t p = 0; p < solids.pieces.size(); ++p) {
@@ -150,8 +150,8 @@ std::string caps_in_python(const Solids& solids) {
   return text;
 }
 
-/// The numbers of the volumes that an end of a period cuts: 1 is the domain, then come the pieces and the
-/// bridges in their order.
+/// The numbers of the volumes that an end of a period cuts: 1 is the domain, followed by the pieces and the
+/// bridges in order.
 std::string cut_volumes(const Solids& solids) {
   std::vector<std::size_t> volumes;
   for (std::size_t p = 0; p < solids.pieces.size(); ++p)
@@ -177,11 +177,11 @@ std::string names_of_groups(const Exported& file) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Exact volume fractions: of whole balls, each type once, and of the rest. None where solids meet that no
-/// formula tells of.
+/// Exact volume fractions: of whole balls, by type, and of the rest. Empty if solids meet in a way without a
+/// formula.
 std::string exact_fractions(const Exported& file) {
   const ContactReport& contacts = file.contacts;
-  if (contacts.meetings > 0 || !trouble_of(file).empty()) return {};
+  if (contacts.meetings > 0 || !reason_against_solids(file).empty()) return {};
   const double total = volume_of(file.domain);
   std::vector<double> of_type(file.type_count, 0.0);
   const auto& radii = file.solids.spheres.r;
@@ -215,7 +215,7 @@ void write_gmsh(const Exported& exported, StagedFolder& staged) {
                                      : fmt::format("{0} (built in lengths of {1} {0})", unit, length)},
               {"NAMES", names_of_groups(file)},
               {"EXACT", exact_fractions(file)},
-              {"TROUBLE", toml_string(trouble_of(file))},
+              {"TROUBLE", toml_string(reason_against_solids(file))},
               {"LOWER", numbers(bounds.lower)},
               {"UPPER", numbers(bounds.upper)},
               {"PERIODIC", periods_in_python(file)},
@@ -239,7 +239,7 @@ std::string note_of_gmsh(const Exported& file) {
   if (std::isfinite(file.solids.end_distance))
     note += fmt::format(", ends of the periods at least {:.3g} radii from touching a sphere",
                         file.solids.end_distance);
-  if (const std::string trouble = trouble_of(file); !trouble.empty())
+  if (const std::string trouble = reason_against_solids(file); !trouble.empty())
     return note + fmt::format("; no mesh is to be expected of {}: {}", file.name_as_word(), trouble);
   note += fmt::format("; python3 {} makes the mesh", file.name_as_word());
   if (comes_near(file))
@@ -250,7 +250,7 @@ std::string note_of_gmsh(const Exported& file) {
   return note;
 }
 
-/// A .geo is a script in Gmsh's own language.
+/// .geo is for scripts in Gmsh's own language.
 void require_python_ending(const void* options, const schema::Section& section) {
   const std::filesystem::path& file = static_cast<const Output*>(options)->file;
   if (file.extension() == ".geo")

@@ -54,7 +54,7 @@ struct Chunk {
   std::string data;
 };
 
-/// "1", "2", …: rows as wide as the longest name and its end.
+/// "1", "2", …: rows of the width of the longest name and its terminator.
 Chunk names_of_types(std::uint32_t count) {
   const auto width = static_cast<std::uint32_t>(std::to_string(count).size() + 1);
   std::string data;
@@ -66,7 +66,7 @@ Chunk names_of_types(std::uint32_t count) {
   return {"particles/types", uint8, count, width, data};
 }
 
-/// One frame, its chunks in the order of their names' numbers, as the index needs it.
+/// The chunks of one frame, in the order of their names' numbers, as the index requires.
 std::vector<Chunk> chunks_of(const Exported& file) {
   const auto n = static_cast<std::uint32_t>(file.size());
   const bool flat = file.dimension() == 2;
@@ -100,7 +100,7 @@ std::vector<Chunk> chunks_of(const Exported& file) {
 
 void write_gsd(const Exported& file, StagedFolder& staged) {
   std::vector<Chunk> chunks = chunks_of(file);
-  std::erase_if(chunks, [](const Chunk& chunk) { return chunk.data.empty(); });  // of no sphere
+  std::erase_if(chunks, [](const Chunk& chunk) { return chunk.data.empty(); });  // if there are no spheres
   std::string names;
   for (const Chunk& chunk : chunks) names.append(chunk.name) += '\0';
   names.resize((names.size() / block_bytes + 1) * block_bytes);  // and the empty name that ends the list
@@ -135,7 +135,7 @@ void write_gsd(const Exported& file, StagedFolder& staged) {
 constexpr double default_diameter = 1;  // of the schema
 constexpr std::uint64_t most_frames = 1 << 30;
 
-/// A file that is read by places, each of which is held against its length before anything is allocated.
+/// A file read by position; every position is checked against its length before anything is allocated.
 class GsdFile {
  public:
   explicit GsdFile(const Reading& reading) : reading_(reading), in_(reading.file, std::ios::binary) {
@@ -156,7 +156,7 @@ class GsdFile {
   std::string application() const { return text_in(header_.application); }
   int frames() const { return frames_; }
 
-  /// Of a frame, from 0, or of the first where it says nothing; none where neither does.
+  /// The chunk of a frame, from 0, else of the first frame; null if neither has it.
   const GsdEntry* chunk(std::string_view name, int frame) const {
     const auto found = chunks_.find(name);
     if (found == chunks_.end()) return nullptr;
@@ -164,7 +164,7 @@ class GsdFile {
       if (const auto entry = found->second.find(key); entry != found->second.end()) return &entry->second;
     return nullptr;
   }
-  /// Numbers of single or double precision, so many columns in each of its rows.
+  /// Numbers of single or double precision, with this many columns a row.
   std::vector<double> numbers(const GsdEntry& entry, std::uint32_t columns, std::string_view name) {
     if (entry.columns != columns || (entry.type != float32 && entry.type != float64))
       fail(fmt::format("has no numbers of {} columns for {}", columns, name));
@@ -195,7 +195,7 @@ class GsdFile {
   }
   static std::string text_in(const char (&bytes)[64]) { return {bytes, strnlen(bytes, sizeof bytes)}; }
 
-  /// Names of version 1 have a block each; of version 2 they end with a zero, the list with an empty one.
+  /// Names of version 1 have a block each; those of version 2 end with a zero, the list with an empty one.
   void read_names(bool have_blocks) {
     using Block = std::array<char, block_bytes>;
     const std::vector<Block> blocks =
@@ -230,7 +230,7 @@ class GsdFile {
 };
 
 FileBox box_of_frame(GsdFile& gsd, const Reading& reading, int frame, bool is_flat) {
-  std::vector<double> six = {1, 1, 1, 0, 0, 0};  // of the schema, where nothing is said
+  std::vector<double> six = {1, 1, 1, 0, 0, 0};  // the schema's default
   if (const GsdEntry* entry = gsd.chunk(box_chunk, frame)) {
     six = gsd.numbers(*entry, 1, box_chunk);
     if (six.size() != 6) gsd.fail("has no six numbers for its box");
@@ -276,7 +276,7 @@ FileContents read_gsd(const Reading& reading) {
     if (diameters.size() != count)
       gsd.fail(
           fmt::format("says that it has {} particles, and has diameters of {}", count, diameters.size()));
-  } else if (!reading.has_size()) {  // writers leave out what equals the schema's default
+  } else if (!reading.has_size()) {  // writers omit what equals the schema's default
     diameters.assign(count, default_diameter);
     contents.note += fmt::format(
         "; no diameters, which the schema takes for {} each: ‹diameter› says another", default_diameter);

@@ -50,7 +50,7 @@ void check_options(const ImportOptions& options) {
     refuse_option("‹diameter› and ‹radius› say the same; give one of them");
   for (const auto& [name, length] : {std::pair{"diameter", options.diameter}, {"radius", options.radius}})
     if (length && !is_size(*length))
-      refuse_option(fmt::format("‹{}›: {}", name, complaint_of_size(*length, name[0] == 'd')));
+      refuse_option(fmt::format("‹{}›: {}", name, size_error(*length, name[0] == 'd')));
   for (const double edge : options.box)
     if (!is_size(edge)) refuse_option(fmt::format("‹box›: {} is no length of an edge", edge));
   for (const double along : options.shift)
@@ -59,7 +59,7 @@ void check_options(const ImportOptions& options) {
     refuse_option("‹dimension› is 2 or 3");
 }
 
-/// Of two dimensions, where the file or the options say so.
+/// Converts to two dimensions, if the file or the options say so.
 void flatten(FileContents& contents, const Reading& reading) {
   const bool wanted = reading.options.dimension ? *reading.options.dimension == 2 : contents.is_flat;
   std::vector<std::vector<double>>& x = contents.spheres.x;
@@ -102,7 +102,7 @@ void move_by(Spheres<dynamic>& spheres, const std::vector<double>& shift) {
     for (double& x : spheres.x[k]) x += shift[k];
 }
 
-/// How many centres were elsewhere.
+/// Returns the number of centres outside.
 std::size_t wrapped_into(const Domain& domain, Spheres<dynamic>& spheres) {
   if (!is_periodic(domain)) return 0;
   const Spheres<dynamic> before = spheres;
@@ -116,7 +116,7 @@ std::size_t wrapped_into(const Domain& domain, Spheres<dynamic>& spheres) {
   return moved;
 }
 
-/// A mistake in unit or size, which would take the certificate for ever.
+/// Catches errors in unit or size, which would make the certificate extremely slow.
 void require_sensible(const Packing& packing, const std::filesystem::path& file) {
   const double phi = packing.packing_fraction();
   if (!(phi <= most_filled))
@@ -159,7 +159,7 @@ ImportedPacking taken_over(FileContents contents, const Reading& reading, const 
   packing.volume = volume_of(packing.domain);
   packing.scene = std::move(place.scene);
   packing.version = version();
-  packing.expected_packing_fraction = std::numeric_limits<double>::quiet_NaN();  // nobody did
+  packing.expected_packing_fraction = std::numeric_limits<double>::quiet_NaN();  // unknown
   packing.outcome = Outcome::imported;
   packing.reason =
       fmt::format("{} read from {}, {}",
@@ -200,7 +200,7 @@ void check_spheres(const Spheres<dynamic>& spheres) {
   }
   const auto none = std::ranges::find_if_not(spheres.r, is_size);
   if (none != spheres.r.end())
-    refuse_option(fmt::format("sphere {}: {}", none - spheres.r.begin(), complaint_of_size(*none, false)));
+    refuse_option(fmt::format("sphere {}: {}", none - spheres.r.begin(), size_error(*none, false)));
 }
 
 }  // namespace
@@ -245,7 +245,7 @@ WrittenPacking write_imported(Packing packing, const std::filesystem::path& file
   packing.scene.start.file = folder / spheres_file_of(packing, options);
   try {
     return write_packing(packing, folder, options);
-  } catch (const Error& error) {  // of measuring, which gives up where nearly all spheres overlap
+  } catch (const Error& error) {  // measuring fails if nearly all spheres overlap
     if (error.code() != ErrorCode::bad_argument) throw;
     refuse_file(file, fmt::format("{}; check its sizes and their unit", error.what()));
   }

@@ -15,7 +15,7 @@ namespace {
 
 [[noreturn]] void refuse_words(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
 
-/// "x, y", for axes as people call them.
+/// "x, y": names of axes.
 std::string axes_in_words(const std::vector<std::size_t>& axes, std::size_t dimension) {
   std::vector<std::string> names;
   for (const std::size_t k : axes)
@@ -23,7 +23,7 @@ std::string axes_in_words(const std::vector<std::size_t>& axes, std::size_t dime
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Ends of the axes as `--periodic` says them: "none", "xyz", "z".
+/// Ends of the axes from `--periodic`: "none", "xyz", "z".
 std::vector<AxisEnd> ends_of_word(const std::string& word, std::size_t dimension) {
   std::vector<AxisEnd> ends(dimension, AxisEnd::wall);
   if (word == "none") return ends;
@@ -42,7 +42,7 @@ std::vector<AxisEnd> ends_of_word(const std::string& word, std::size_t dimension
   return ends;
 }
 
-/// The least edge whose sum with the corner, as a box rounds it, reaches the upper bound.
+/// The least edge whose sum with the corner, as the box rounds it, reaches the upper bound.
 double edge_between(double lower, double upper) {
   double edge = upper - lower;
   while (lower + edge < upper) edge = std::nextafter(edge, std::numeric_limits<double>::infinity());
@@ -62,7 +62,7 @@ void bounds_along(const Spheres<dynamic>& spheres, std::size_t axis, double& low
   upper = std::nextafter(upper, infinity);
 }
 
-/// The box that is meant, its ends all decided, and why in words.
+/// The box with all ends decided, and the reason in words.
 FileBox box_of_import(const FileContents& contents, const ImportOptions& options, std::string& words) {
   const std::size_t dimension = contents.spheres.x.size();
   FileBox box;
@@ -144,7 +144,8 @@ ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why
         PeriodicBox{.dimension = static_cast<int>(dimension), .size = edges, .walls = walls};
     made.domain = packed_domain_of(made.scene);
     if (std::ranges::any_of(box.lower, [](double x) { return x != 0; }))
-      for (const double x : box.lower) made.shift.push_back(0 - x);  // of 0 no -0, which would be printed
+      // 0 - x avoids -0, which would be printed.
+      for (const double x : box.lower) made.shift.push_back(0 - x);
   }
   made.words = fmt::format("{}, {}, {}", name_of(made.domain), edges_in_words(edges, unit), why);
   return made;
@@ -164,7 +165,7 @@ ImportDomain domain_of_scene(FileContents& contents, Unit unit, const Scene& sce
   const auto converted = unit_conversion(unit, scene.unit);
   Mapping{[&](double x, int) { return converted(x); }, converted}.map(contents.spheres);
   if (std::holds_alternative<MeshFile>(scene.container)) {
-    std::string notes, caution;  // the smallest says how finely a curved part is to be cut into triangles
+    std::string notes, caution;  // the smallest radius determines the tessellation of curved parts
     made.scene.sizes = Constant{std::ranges::min(contents.spheres.r)};
     made.domain = domain_of(made.scene, notes, caution);
     made.scene.sizes = Constant{0};

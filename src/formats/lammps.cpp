@@ -11,10 +11,10 @@
 namespace bernal {
 namespace {
 
-/// A system of units: what its lengths are in, what its masses, and how many kg/m³ its density of 1 is.
+/// A system of units: the units of lengths and masses, and its unit of density in kg/m³.
 struct UnitStyle {
   std::string_view name;
-  std::optional<Unit> length;  ///< none: reduced, or in ångström
+  std::optional<Unit> length;  ///< absent: reduced, or ångström
   std::string_view mass = {};
   double density = 1;
 };
@@ -27,7 +27,7 @@ constexpr UnitStyle unit_styles[] = {{"si", Unit::m, "kg", 1},
                                      {"metal", {}},
                                      {"electron", {}}};
 
-/// One that has this unit of lengths, else reduced units in which the mass is in kg.
+/// The style with this unit of lengths, else reduced units with the mass in kg.
 UnitStyle style_of_unit(Unit length) {
   for (const UnitStyle& style : unit_styles)
     if (style.length == length) return style;
@@ -45,7 +45,7 @@ void write_lammps(const Exported& file, TextFile& out) {
   write_atoms(out, file, file.output.density / units.density, "Atoms # sphere");
 }
 
-/// The columns of a style of atoms; after them may stand three more, in which box the atom is.
+/// The columns of an atom style; three more may follow, the image flags.
 struct AtomStyle {
   std::vector<std::string_view> names;
   std::vector<std::string> columns;
@@ -62,7 +62,7 @@ const std::vector<AtomStyle>& atom_styles() {
 }
 constexpr std::size_t image_columns = 3;
 
-/// Of the heading "Atoms # sphere", or, where it does not say, of the number of columns.
+/// The style in the heading "Atoms # sphere", or, if absent, by the number of columns.
 const AtomStyle& style_of_atoms(std::string_view said, std::size_t columns, const ForeignLines& lines) {
   const auto fits = [&](const AtomStyle& style) {
     return columns == style.columns.size() || columns == style.columns.size() + image_columns;
@@ -85,15 +85,15 @@ const AtomStyle& style_of_atoms(std::string_view said, std::size_t columns, cons
                         bernal::quoted(said)));
 }
 
-/// What stands before the atoms.
+/// The part of the file before the atoms.
 struct DataHead {
   std::uint64_t atoms = 0;
   bool has_atoms = false;
   FileBox box = FileBox::of_three(AxisEnd::unsaid);
   std::array<bool, 3> has_axis{};
-  std::vector<std::string> unheard = {};  ///< clauses of remarks that sound like units, and are none
+  std::vector<std::string> not_units = {};  ///< clauses of remarks that sound like units but are not
 
-  /// "10 atoms", "0 3 xlo xhi"; others are of no matter.
+  /// "10 atoms", "0 3 xlo xhi"; other lines are ignored.
   void take(std::span<const std::string_view> words, const Reading& reading, const ForeignLines& lines) {
     if (words.size() == 2 && words[1] == "atoms") {
       const std::uint64_t said = lines.whole(words[0], "atoms");
@@ -122,7 +122,7 @@ struct DataHead {
   }
 };
 
-/// Not so prose that begins with the word.
+/// False for prose that begins with the word.
 bool is_boundary(std::string_view clause) {
   std::vector<std::string_view> words;
   split_at(clause, " \t", words);
@@ -140,7 +140,7 @@ bool sounds_like_unit(std::string_view clause) {
       words, [&](std::string_view word) { return std::ranges::find(known, word) != std::end(known); });
 }
 
-/// Of a clause "boundary p p f" or "boundary pp pp ff".
+/// From a clause "boundary p p f" or "boundary pp pp ff".
 void take_boundary(std::string_view clause, FileBox& box, const ForeignLines& lines) {
   std::vector<std::string_view> words;
   split_at(clause, " \t", words);
@@ -157,8 +157,7 @@ void take_boundary(std::string_view clause, FileBox& box, const ForeignLines& li
   box.ends = ends;
 }
 
-/// "# …; boundary p p f; …", "…, units = si", "…; lengths in mm": what a first line or a remark may tell,
-/// each in a clause of its own.
+/// "# …; boundary p p f; …", "…, units = si", "…; lengths in mm": clauses in the first line or a remark.
 void take_remark(const ForeignLines& lines, FileContents& contents, DataHead& head) {
   lines.take_unit_remark(contents.unit);
   constexpr std::string_view of_units = "units = ", of_ends = "boundary ";
@@ -172,12 +171,12 @@ void take_remark(const ForeignLines& lines, FileContents& contents, DataHead& he
     } else if (clause.starts_with(of_ends) && is_boundary(clause)) {
       take_boundary(clause, head.box, lines);
     } else if (!unit_in_clause(clause) && sounds_like_unit(clause)) {
-      head.unheard.emplace_back(clause);
+      head.not_units.emplace_back(clause);
     }
   }
 }
 
-/// Whether the line is a heading of another section, "Velocities" or "Pair Coeffs": words without a number.
+/// Whether the line is the heading of another section, "Velocities" or "Pair Coeffs": words without a number.
 bool is_heading(std::span<const std::string_view> words) {
   return std::ranges::none_of(words, [](std::string_view word) {
     return word.find_first_of("0123456789") != word.npos || is_number(word);
@@ -191,7 +190,7 @@ void read_atoms(std::string_view said, std::uint64_t claimed, const Reading& rea
   Identities identities;
   std::size_t in_row = 0;
   while (lines.next()) {
-    if (lines.line().starts_with('#') && style) lines.is_row_left_out(lines.words(), in_row);
+    if (lines.line().starts_with('#') && style) lines.is_commented_row(lines.words(), in_row);
     const auto row = lines.words_before('#');
     if (row.empty()) continue;
     if (!is_number(row.front())) {
@@ -217,7 +216,7 @@ void read_atoms(std::string_view said, std::uint64_t claimed, const Reading& rea
                                 said.empty() ? fmt::format(", by its {} columns", in_row) : "");
 }
 
-/// The other sections, of which none may have atoms once more.
+/// Reads the other sections, which must not include atoms again.
 void read_to_end(ForeignLines& lines) {
   do {
     const auto words = lines.words_before('#');
@@ -254,14 +253,14 @@ FileContents read_lammps_data(const Reading& reading) {
           fmt::format("{} stands behind Atoms; write the style behind a mark, such as \"Atoms # sphere\"",
                       bernal::quoted(words[1])));
     read_atoms(said, head.atoms, reading, lines, contents);
-    if (!head.unheard.empty())
-      contents.note += fmt::format("; \"{}\" is not taken for a unit", fmt::join(head.unheard, "\", \""));
+    if (!head.not_units.empty())
+      contents.note += fmt::format("; \"{}\" is not taken for a unit", fmt::join(head.not_units, "\", \""));
     read_to_end(lines);
     return contents;
   }
 }
 
-/// A line "1000 atoms" near the beginning.
+/// Whether there is a line "1000 atoms" near the beginning.
 bool counts_atoms(const FileBeginning& file) {
   for (std::size_t at = file.bytes.find(" atoms"); at != file.bytes.npos;
        at = file.bytes.find(" atoms", at + 1)) {

@@ -7,15 +7,15 @@
 
 namespace bernal {
 
-/// The body of a LAMMPS data file, after its first lines: counts, box, and a line
-/// `id type diameter density x y z` a sphere under that heading.
+/// Writes the body of a LAMMPS data file, after its first lines: counts, box, and under the heading a line
+/// `id type diameter density x y z` for each sphere.
 void write_atoms(TextFile& out, const Exported& file, double density, std::string_view heading);
 
-/// "p p f", whose third axis is a period in the plane.
+/// "p p f"; in two dimensions the third axis is periodic.
 std::string lammps_boundary(const Exported&);
 
-/// The unit of lengths of a style of units; none of those whose lengths are reduced or in ångström. Throws
-/// for a word that is no style.
+/// The unit of lengths of a style of units; absent for reduced lengths and ångström. Throws for an unknown
+/// style.
 std::optional<Unit> unit_of_style(std::string_view name, const CsvLines& lines);
 
 }  // namespace bernal

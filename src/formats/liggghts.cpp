@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view script_ending = ".in", walls_ending = ".stl";
 
-/// Of a soft glass, as tutorials have it: Pa.
+/// A soft glass, as in tutorials; Pa.
 constexpr double youngs_modulus = 5e6, poissons_ratio = 0.25, restitution = 0.7, friction = 0.3;
 
 /// A fifth of the time in which a Rayleigh wave crosses the smallest sphere.
@@ -42,7 +42,7 @@ std::string plane_wall(int axis, std::string_view name, double position) {
   return fmt::format("fix {} {} primitive type 1 {}plane {}\n", name, wall, "xyz"[axis], position);
 }
 
-/// A word of a script: between quotation marks nothing but those means anything.
+/// A word of a script: inside quotation marks only those marks are special.
 std::string word_of_script(const std::string& name) {
   const char mark = name.find('"') == name.npos ? '"' : '\'';
   return is_plain_word(name) ? name : mark + name + mark;
@@ -57,11 +57,11 @@ void require_script_word(const void* options, const schema::Section& section) {
                              toml_string(name)));
 }
 
-/// How far triangles stand off a round wall, over the largest radius.
+/// Distance of triangles from a round wall, over the largest radius.
 constexpr double wall_deflection_of_spheres = 0.01;
 
-/// The walls as triangles, where LIGGGHTS has no primitive for them: those of a part, or of a polyhedron
-/// around a sphere or an oblique cylinder.
+/// The walls as triangles, if LIGGGHTS has no primitive for them: those of a part, or of a polyhedron around
+/// a sphere or an oblique cylinder.
 std::optional<Mesh> walls_as_triangles(const Exported& file) {
   if (const auto* mesh = std::get_if<Mesh>(&file.domain)) return *mesh;
   const auto* cylinder = std::get_if<Cylinder>(&file.domain);
@@ -74,7 +74,7 @@ std::optional<Mesh> walls_as_triangles(const Exported& file) {
   return walls;
 }
 
-/// The lines that make the walls of the domain, or say why there are none.
+/// The lines that make the walls of the domain, or a comment why there are none.
 struct WallLines {
   const Exported& file;
   std::string walls_file;
@@ -91,7 +91,7 @@ struct WallLines {
   std::string operator()(const Cylinder& cylinder) const {
     const int axis = cylinder.coordinate_axis();
     if (axis < 0) return surface();
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;  // as they follow it in x, y, z, x
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;  // they follow the axis cyclically
     std::string lines = fmt::format("fix side {} primitive type 1 {}cylinder {} {} {}\n", wall, "xyz"[axis],
                                     cylinder.radius, cylinder.base[u], cylinder.base[v]);
     if (cylinder.periodic) return lines;
@@ -112,7 +112,7 @@ struct WallLines {
   }
 };
 
-/// A mesh as ASCII STL, every double to the last bit; LIGGGHTS takes the normals from the corners.
+/// A mesh as ASCII STL with exact doubles; LIGGGHTS computes the normals from the corners.
 void write_walls(const Mesh& mesh, const std::filesystem::path& path) {
   TextFile out(path);
   out.add("solid walls\n");

@@ -9,8 +9,8 @@
 namespace bernal {
 namespace {
 
-/// MFiX skips eighteen lines, of which the first says which version this is, then counts on: data begin in
-/// line 35. Empty lines it does not count.
+/// MFiX skips eighteen lines, the first of which holds the version, then counts non-empty lines: data begin
+/// in line 35.
 void write_mfix(const Exported& file, TextFile& out) {
   const int dimension = file.dimension();
   const bool has_phases = file.type_count > 1, is_flat = dimension == 2;
@@ -33,16 +33,16 @@ void write_mfix(const Exported& file, TextFile& out) {
   }
 }
 
-/// What the lines before the data say.
+/// The statements before the data.
 struct MfixHead {
   int dimension = 3;
   std::uint64_t particles = 0;
   std::vector<std::string> columns;
-  bool more_may_follow = false;    ///< columns of which only the run knows how many there are
-  std::optional<double> diameter;  ///< of all, where no column has it
+  bool more_may_follow = false;    ///< further columns, whose number only the run knows
+  std::optional<double> diameter;  ///< of all spheres, if there is no column for it
 };
 
-/// "Diameter T", or "Density F 2500": a column, or not.
+/// "Diameter T" is a column, "Density F 2500" is not.
 void take_variable(std::span<const std::string_view> words, MfixHead& head, const ForeignLines& lines) {
   const std::string_view name = words[0];
   const bool is_column = words[1] == "T";
@@ -59,7 +59,7 @@ void take_variable(std::span<const std::string_view> words, MfixHead& head, cons
   } else if (name == "Phase_ID" || name == "Density" || name == "Temperature") {
     add(1);
   } else if (name == "Species" || name.starts_with("User_") || name.starts_with("Rotational")) {
-    head.more_may_follow = head.more_may_follow || is_column;  // they come last, and are of no matter
+    head.more_may_follow = head.more_may_follow || is_column;  // the last columns, ignored
   } else if (is_column) {
     lines.fail(
         fmt::format("the variable {} is not known, and so not what stands in the columns; known are {}",
@@ -68,7 +68,7 @@ void take_variable(std::span<const std::string_view> words, MfixHead& head, cons
   }
 }
 
-/// Whether a row is what the variables that are columns make of it.
+/// Checks a row against the variables that are columns.
 void check_columns(std::size_t in_row, const MfixHead& head, const ForeignLines& lines) {
   const std::size_t known = head.columns.size();
   if (in_row < known || (in_row > known && !head.more_may_follow))

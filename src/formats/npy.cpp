@@ -35,7 +35,7 @@ void write_columns(const Exported& file, StagedFolder& staged) {
       [&](std::size_t i, std::size_t k) { return k < dimension ? file.spheres.x[k][i] : file.spheres.r[i]; });
 }
 
-/// All of an array, column by column.
+/// A whole array, column by column.
 std::vector<std::vector<double>> columns_in(NpyFile& array) {
   std::vector<std::vector<double>> columns(array.columns(), std::vector<double>(array.rows()));
   array.read([&](std::size_t k, std::size_t first, std::span<const double> values) {
@@ -44,7 +44,7 @@ std::vector<std::vector<double>> columns_in(NpyFile& array) {
   return columns;
 }
 
-/// x, y, z, r or x, y, z, unless the words say another.
+/// x, y, z, r or x, y, z, unless the options say otherwise.
 SphereColumns array_columns(const Reading& reading, const NpyFile& array,
                             const std::vector<std::string>& names) {
   if (array.is_list()) array.fail("has one dimension; rows of x, y, z or x, y, z, r are expected");
@@ -67,7 +67,7 @@ std::vector<double> read_radii(const std::filesystem::path& file, std::uint64_t 
     array.fail(fmt::format("has {} radii, and there are {} centres", array.rows(), rows));
   std::vector<double> radii = columns_in(array).front();
   for (std::size_t i = 0; i < rows; ++i)
-    if (!is_size(radii[i])) array.fail_at(i, complaint_of_size(radii[i], false));
+    if (!is_size(radii[i])) array.fail_at(i, size_error(radii[i], false));
   return radii;
 }
 

@@ -11,7 +11,7 @@ std::string write_obj_file(const Exported& file, StagedFolder& staged) {
   std::optional<std::uint32_t> last;
   bool any = false;
   surfaces.visit([&](const SurfacePart& part) {
-    if (!any || part.sphere != last) {  // pieces of one sphere make one object
+    if (!any || part.sphere != last) {  // pieces of one sphere form one object
       if (part.sphere)
         out.add("o sphere_", *part.sphere, '\n');
       else

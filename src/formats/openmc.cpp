@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::string_view script_ending_py = ".py";
 
-/// A point or a direction as Python.
+/// A point or a direction in Python.
 std::string tuple_of(const Vector<3>& v) { return fmt::format("({})", row_of(v, ", ")); }
 
-/// The body of `region`, in Python: what bounds the domain.
+/// The body of the Python function `region`: the surfaces that bound the domain.
 struct RegionLines {
   const Exported& file;
 
-  /// Along one axis: planes at its ends.
+  /// Planes at both ends of an axis.
   std::string between(int axis, double lower, double upper) const {
     const bool repeats = file.periods()[static_cast<std::size_t>(axis)];
     const char letter = "xyz"[axis], plane = "XYZ"[axis];

@@ -8,21 +8,21 @@
 #include "formats/templates.hpp"
 #include "formats/text_file.hpp"
 #include "report/legend.hpp"
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace {
 
-/// What a sphere of the packing begins with, and how the frame is told: to the writer and the reader.
+/// The start of a packing's sphere, and the remark about the frame, for writer and reader.
 constexpr std::string_view ball_mark = "sphere{<", swap_mark = "y and z have changed places";
 
-/// POV-Ray's frame is left-handed and its y points up: y and z change places.
+/// POV-Ray's frame is left-handed with y up, so y and z are swapped.
 std::string vector_of(const Vector<3>& v) { return fmt::format("<{}, {}, {}>", v[0], v[2], v[1]); }
 
 constexpr std::string_view glass = "pigment { srgbt <0.62, 0.70, 0.80, 0.82> } no_shadow";
 
-/// POV-Ray takes what is smaller than some 1e-6 for a point, and sees no farther than 1e7: a picture of a
-/// domain of another size is made in lengths of its own, so many of the file's unit each. A power of ten.
+/// POV-Ray treats lengths below about 1e-6 as zero and sees no farther than 1e7: a domain of another size is
+/// drawn in another unit of length, a power of ten.
 double length_in_picture(const Domain& domain) {
   constexpr double smallest = 0.1, largest = 1e4;
   const double diagonal = bounds_of(domain).diagonal();
@@ -30,7 +30,7 @@ double length_in_picture(const Domain& domain) {
   return std::pow(10, std::floor(std::log10(diagonal)));
 }
 
-/// The lines that show the domain, for the spheres in it to be seen.
+/// The lines that show the domain with the spheres in it.
 struct OutlineLines {
   std::string edge(const Vector<3>& from, const Vector<3>& to) const {
     return fmt::format("cylinder {{ {}, {}, Thickness }}\n", vector_of(from), vector_of(to));
@@ -73,8 +73,8 @@ std::string note_of_picture(const Exported& file) {
   return fmt::format("radii; in the picture a length of 1 is {} {}", length, name_of(file.unit()));
 }
 
-/// With a camera far enough away to see all of the domain, and of spheres that stick out of it, in pictures
-/// that are at least as wide as high.
+/// The camera is far enough away to see all of the domain and protruding spheres, in pictures at least as
+/// wide as high.
 void write_picture(const Exported& file, double length, TextFile& out) {
   constexpr double half_angle = 13 * std::numbers::pi / 180;
   const Bounds<3> bounds = bounds_of(file.domain);
@@ -122,7 +122,7 @@ void write_povray(const Exported& file, TextFile& out) {
   write_picture(picture, length, out);
 }
 
-/// Of scenes that bernal wrote: a sphere of the packing has a line, and no blank after its word.
+/// Reads scenes that bernal wrote: each sphere of the packing has a line, without a blank after the keyword.
 FileContents read_povray(const Reading& reading) {
   ForeignLines lines(reading);
   FileContents contents;

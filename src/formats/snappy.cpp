@@ -13,19 +13,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Cells across the largest sphere's radius far from all surfaces, and how much finer they are on it: two
-/// levels make four cells across every radius.
+/// Cells across the largest sphere's radius far from all surfaces, and their refinement on spheres: two
+/// levels make at least four cells across every radius.
 constexpr double cells_per_radius = 1;
 constexpr int level_on_spheres = 2, levels_in_gaps = 1, most_levels = 8;
 
-/// Spheres whose radii need the same level: those above half the largest, above a quarter, and so on.
+/// Spheres with radii of the same level: above half the largest, above a quarter, and so on.
 struct Octave {
   int level;  ///< of refinement
   std::string name;
   Spheres<dynamic> spheres{3};
 };
 
-/// Every ball that reaches into the domain, whole, in all its images.
+/// Every whole ball that reaches into the domain, in all its images.
 std::vector<Octave> octaves_of(const Exported& file) {
   Spheres<dynamic> wrapped = file.spheres;
   wrap(wrapped, file.domain);
@@ -46,7 +46,7 @@ std::vector<Octave> octaves_of(const Exported& file) {
   return all;
 }
 
-/// That cells are measured by: the largest radius, or where there is none a tenth of the domain.
+/// The length scale of cells: the largest radius, or a tenth of the domain if there is none.
 double length_of(const Exported& file) {
   const double radius = file.largest_radius();
   return radius > 0 ? radius : 0.1 * bounds_of(file.domain).size().maxCoeff();
@@ -54,7 +54,7 @@ double length_of(const Exported& file) {
 
 std::string point(const Vector<3>& p) { return fmt::format("({})", row_of(p)); }
 
-/// The block that cells are made from: a period, or what lies about the walls.
+/// The block that cells are made from: a period, or a box around the walls.
 struct Block {
   Bounds<3> bounds;
   std::array<bool, 3> periodic{};
@@ -82,7 +82,7 @@ std::string block_mesh(const Exported& file, const Block& block) {
   const Vector<3>&lower = block.bounds.lower, &upper = block.bounds.upper;
   std::string corners, patches;
   for (int corner = 0; corner < 8; ++corner) {
-    // In the order of hexahedra: round the bottom, then round the top.
+    // In the order of hexahedra: around the bottom, then around the top.
     const bool x = (corner & 3) == 1 || (corner & 3) == 2, y = (corner & 2) != 0, z = (corner & 4) != 0;
     corners +=
         "    " + point({x ? upper[0] : lower[0], y ? upper[1] : lower[1], z ? upper[2] : lower[2]}) + "\n";
@@ -108,7 +108,7 @@ std::string block_mesh(const Exported& file, const Block& block) {
 std::string snappy_dict(const std::vector<Octave>& octaves, bool has_container, const PorePoint& inside,
                         bool is_proven) {
   std::string surfaces, levels;
-  // gapLevel: where opposite surfaces leave fewer than three cells, as many levels more.
+  // gapLevel: additional levels where opposite surfaces leave fewer than three cells.
   const auto add = [&](std::string_view name, const std::string& how) {
     surfaces +=
         fmt::format("    {0}.stl\n    {{\n        type triSurfaceMesh;\n        name {0};\n    }}\n", name);
@@ -140,7 +140,7 @@ void write_surface(const Exported& file, const Surfaces& surfaces, const fs::pat
   out.close();
 }
 
-/// Whole spheres, as if nothing repeated itself.
+/// Whole spheres, ignoring periods.
 std::string write_spheres(const Exported& file, const Octave& octave, const fs::path& to) {
   const Bounds<3> bounds = bounds_of(file.domain);
   const Surfaces surfaces(octave.spheres, Box{bounds.lower, bounds.size()}, file.output.deflection,
@@ -149,7 +149,7 @@ std::string write_spheres(const Exported& file, const Octave& octave, const fs::
   return surfaces.note();
 }
 
-/// The walls, which go on beyond the ends of periods.
+/// The walls, continued beyond the ends of periods.
 void write_container(const Exported& file, const WallSurface& walls, const fs::path& to) {
   write_surface(file,
                 Surfaces(Spheres<dynamic>(3), walls.extended(boundary_of<3>(file.domain)),
@@ -167,7 +167,7 @@ std::string write_case(const Exported& file, StagedFolder& staged) {
   const Block block = block_of(file, walls);
   const bool has_container = !block.is_container;
   const std::vector<Octave> octaves = octaves_of(file);
-  const bool is_proven = file.protruding == 0;  // else what lies outside of the walls is no pore
+  const bool is_proven = file.protruding == 0;  // otherwise a point outside the walls is no pore
   std::string notes;
   for (const Octave& octave : octaves)
     notes += fmt::format(
@@ -183,7 +183,7 @@ std::string write_case(const Exported& file, StagedFolder& staged) {
   staged.write(name + "/system/fvSchemes", snappy_fvSchemes);
   staged.write(name + "/system/fvSolution", snappy_fvSolution);
   staged.write(name + "/Allmesh", script(file, has_container));
-  std::error_code ignored;  // a file system may know no permissions
+  std::error_code ignored;  // the file system may not support permissions
   fs::permissions(staged.written(name + "/Allmesh"), fs::perms::owner_exec | fs::perms::group_exec,
                   fs::perm_options::add, ignored);
   return fmt::format("{}; locationInMesh {} m, no sphere and no wall nearer than {:.4g} m{}; run {}/Allmesh",
@@ -201,7 +201,7 @@ Format snappy_format() {
           .unit = Unit::m,
           .sizes = "triangles",
           .is_folder = true,
-          .write_and_tell = write_case};
+          .write_with_note = write_case};
 }
 
 }  // namespace bernal

@@ -28,7 +28,7 @@ std::optional<std::size_t> axis_named(std::string_view name) {
   const std::string lower = in_lower_case(name);
   const std::string_view word = lower;
   if (word.size() == 1 && word[0] >= 'x' && word[0] <= 'z') return static_cast<std::size_t>(word[0] - 'x');
-  for (const std::string_view stem : {"x", "points:", "points_"}) {  // the latter are ParaView's
+  for (const std::string_view stem : {"x", "points:", "points_"}) {  // the latter two are ParaView's
     if (!word.starts_with(stem) || word.size() != stem.size() + 1) continue;
     const char digit = word.back();
     if (digit >= '0' && digit < '0' + max_dimension) return static_cast<std::size_t>(digit - '0');
@@ -37,15 +37,15 @@ std::optional<std::size_t> axis_named(std::string_view name) {
 }
 namespace {
 
-/// Takes places for roles, one by one.
+/// Assigns columns to roles, one by one.
 struct Choice {
   const CsvLines& lines;
   std::vector<std::optional<std::size_t>> axes = {};
   std::optional<std::size_t> size = {};
   bool is_diameter = false;
-  bool twice = false;  ///< two columns have one role
+  bool twice = false;  ///< two columns have the same role
 
-  /// False where the word names no role.
+  /// False if the word is not a role.
   bool take(std::string_view role, std::size_t place) {
     if (const auto axis = axis_named(role)) {
       if (axes.size() <= *axis) axes.resize(*axis + 1);
@@ -93,7 +93,7 @@ SphereColumns columns_by_name(const std::vector<std::string>& names, const CsvLi
   return choice.columns(names);
 }
 
-/// The column that is meant by a number, from 1, or by its name.
+/// The column for a number, from 1, or a name.
 std::size_t place_of_wish(std::string_view word, const std::vector<std::string>& names,
                           const CsvLines& lines) {
   for (std::size_t k = 0; k < names.size(); ++k)
@@ -138,7 +138,7 @@ SphereColumns sphere_columns(const std::string& wish, const std::vector<std::str
   }
   std::vector<std::string_view> words;
   split_fields(wish, ',', words);
-  // A list of names that the header has goes by them, whatever their order.
+  // A list of names in the header selects by name, in any order.
   const auto is_named = [&](std::string_view word) {
     return std::ranges::any_of(
         names, [&](const std::string& name) { return in_lower_case(name) == in_lower_case(word); });
@@ -155,7 +155,7 @@ SphereColumns sphere_columns(const std::string& wish, const std::vector<std::str
     if (sign != word.npos) {
       place = place_of_wish(word.substr(sign + 1), names, lines);
     } else if (by_name) {
-      // "d" is also what the header calls "diameter".
+      // "d" also matches the header "diameter".
       const auto same = std::ranges::find_if(names, [&](const std::string& name) {
         const std::string lower = in_lower_case(name);
         return lower == role || (names_radius(role) && names_radius(lower)) ||

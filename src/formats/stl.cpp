@@ -44,16 +44,16 @@ Format surface_format(std::string_view name, std::string_view help, std::string_
           .keys = std::move(all),
           .file = file,
           .sizes = "triangles",
-          .write_and_tell = write};
+          .write_with_note = write};
 }
 
 void write_stl(OutputFile& out, const Exported& file, const Surfaces& surfaces) {
-  // Readers take a file that begins with "solid" for text.
+  // Readers treat a file that begins with "solid" as text.
   std::string header = fmt::format("lengths in {}; {}", name_of(file.unit()), file.title());
   header.resize(80, ' ');
   out.append(header);
   append_bytes(out, static_cast<std::uint32_t>(surfaces.triangles()));
-  std::vector<FloatPoint> shared;  // of the container, which come first
+  std::vector<FloatPoint> shared;  // of the container, which comes first
   std::string bytes;
   surfaces.visit([&](const SurfacePart& part) {
     if (!part.sphere) shared.assign(part.vertices.begin(), part.vertices.end());

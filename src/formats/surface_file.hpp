@@ -8,10 +8,10 @@
 
 namespace bernal {
 
-/// The triangles that a file is to hold. The file outlives them.
+/// The triangles of a file. `file` must outlive them.
 Surfaces surfaces_of(const Exported& file);
 
-/// An entry with the keys of all formats of triangles, and those besides.
+/// An entry with the keys of all triangle formats and these additional ones.
 Format surface_format(std::string_view name, std::string_view help, std::string_view file,
                       std::string (*write)(const Exported&, StagedFolder&),
                       const std::vector<std::string_view>& keys = {});

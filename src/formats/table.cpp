@@ -10,18 +10,19 @@ bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with('%') || line.starts_with("//") || line.starts_with('!');
 }
 
-/// Of a line of numbers. A semicolon before a comma: in some countries that is a decimal point.
+/// The separator in a line of numbers. A semicolon takes precedence over a comma, which may be a decimal
+/// point.
 char separator_of(std::string_view line) {
   for (const char separator : {';', ',', '\t'})
     if (line.find(separator) != line.npos) return separator;
   return ' ';
 }
 
-/// What is known of the columns before the first row.
+/// The information before the first row.
 struct TableHead {
   char separator = ' ';
   std::vector<std::string> names, units;
-  bool is_row = false;  ///< the line after which reading stopped
+  bool is_row = false;  ///< the line at which reading stopped is a row
 
   void take(const Headings& headings) {
     separator = headings.separator;
@@ -34,7 +35,7 @@ struct TableHead {
   }
 };
 
-/// The names of a line, without empty ones where it ends in a delimiter.
+/// The names in a line, without empty ones if it ends in a delimiter.
 Headings named_columns(std::string_view line) {
   Headings headings = headings_in(line);
   while (headings.columns.size() > 1 && headings.columns.back().name.empty() &&
@@ -43,14 +44,14 @@ Headings named_columns(std::string_view line) {
   return headings;
 }
 
-/// Whether a remark names at least a first coordinate: then it is a header and no text for people.
+/// Whether a remark names at least the first coordinate, so that it is a header.
 bool names_coordinates(const Headings& headings) {
   for (const Heading& heading : headings.columns)
     if (heading.name == "x" || heading.name == "x0") return true;
   return false;
 }
 
-/// Throws where a field begins with a quotation mark and does not end with one.
+/// Throws if a field begins with a quotation mark but does not end with one.
 void split_row(const ForeignLines& lines, char separator, std::vector<std::string_view>& fields) {
   const std::string_view line = stripped(lines.line(), " \t");
   if (separator == ' ') {
@@ -65,7 +66,7 @@ void split_row(const ForeignLines& lines, char separator, std::vector<std::strin
                       bernal::quoted(field)));
 }
 
-/// Without the empty ones at the end, since some programs end every line with a delimiter or several.
+/// Without empty fields at the end, since some programs end every line with delimiters.
 std::size_t filled(std::span<const std::string_view> fields) {
   std::size_t count = fields.size();
   while (count > 0 && fields[count - 1].empty()) --count;
@@ -79,7 +80,7 @@ TableHead read_head(ForeignLines& lines, std::string& unit) {
     const std::string_view line = stripped(lines.line(), " \t");
     if (line.empty() || lines.says_unit(unit)) continue;
     if (is_comment(line)) {
-      lines.refuse_what_a_spreadsheet_gave_up();
+      lines.refuse_spreadsheet_errors();
       std::string_view remark = stripped(line, "#%!/ \t");
       if (const std::size_t label = remark.find(": "); label != remark.npos) remark.remove_prefix(label + 2);
       if (Headings headings = named_columns(remark); names_coordinates(headings))
@@ -106,7 +107,7 @@ std::string unit_of_heading(const TableHead& head, std::size_t place) {
   return head.units[place].empty() ? "no unit" : bernal::quoted(head.units[place]);
 }
 
-/// Of the columns that are read, where the header says one.
+/// The unit of the columns that are read, if the header states one.
 void take_units_of(const SphereColumns& columns, const TableHead& head, const CsvLines& lines,
                    std::string& unit) {
   if (head.units.empty()) return;
@@ -137,8 +138,8 @@ FileContents read_table(const Reading& reading) {
     if (line.empty() || (is_comment(line) && lines.says_unit(unit))) continue;
     split_row(lines, head.separator, fields);
     if (is_comment(line)) {
-      lines.refuse_what_a_spreadsheet_gave_up();
-      if (lines.is_row_left_out(std::span(fields).first(filled(fields)), least) && ++left_out == 1)
+      lines.refuse_spreadsheet_errors();
+      if (lines.is_commented_row(std::span(fields).first(filled(fields)), least) && ++left_out == 1)
         first_left_out = lines.number();
       continue;
     }

@@ -13,13 +13,13 @@
 namespace bernal {
 
 /// A file of numbers and words. Doubles are the shortest decimals that read back as the same. Cost: about 50
-/// ns a number. As OutputFile: nothing is certain before `close` has returned. Throws Cancelled
-/// where an Interruptible says stop.
+/// ns a number. As with OutputFile, nothing is certain before `close` has returned. Throws Cancelled if an
+/// Interruptible says stop.
 class TextFile {
  public:
   explicit TextFile(const std::filesystem::path& path) : file_(path) {}
 
-  /// Appends one after the other.
+  /// Appends the values one after the other.
   template <class... T>
   void add(const T&... values) {
     (put(values), ...);
@@ -60,7 +60,7 @@ class TextFile {
 static_assert(std::endian::native == std::endian::little,
               "binary files are written as numbers lie in memory");
 
-/// Numbers as they lie in memory.
+/// Numbers as in memory.
 template <class T>
 std::string_view bytes_of(std::span<const T> values) {
   return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};

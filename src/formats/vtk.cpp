@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view legacy_mark = "# vtk DataFile", xml_mark = "<VTKFile";
 
-/// The points' places are called x, y, z, and nothing else is.
+/// The coordinates of the points are named x, y, z, other columns keep their names.
 NumberTable columns_of(const VtkPoints& points) {
   NumberTable all;
   all.add(points.places, 3, "");
@@ -30,7 +30,7 @@ NumberTable columns_of(const VtkPoints& points) {
   return all;
 }
 
-/// Into the order of the array "id", where that numbers the spheres.
+/// Sorts by the array "id", if that numbers the spheres.
 void sort_by_number(const NumberTable& all, const Reading& reading, Spheres<dynamic>& spheres) {
   const auto found = std::ranges::find_if(
       all.names, [](const std::string& name) { return name == "id" || name == "ID" || name == "Id"; });
@@ -91,14 +91,14 @@ std::optional<double> number_in_text(std::string_view word) {
              : std::numeric_limits<double>::infinity();
 }
 
-std::string complaint_of_faces(std::uint64_t count) {
+std::string faces_error(std::uint64_t count) {
   return fmt::format(
       "the points are the corners of {} faces or solids, and no centres of spheres; save the particles as "
       "points, before a filter such as Glyph makes surfaces of them",
       count);
 }
 
-std::string complaint_of_type(std::string_view type) {
+std::string type_error(std::string_view type) {
   return fmt::format("numbers of the type {} are not known; save float or double", bernal::quoted(type));
 }
 

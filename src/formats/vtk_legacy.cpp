@@ -16,20 +16,20 @@ namespace {
 
 constexpr std::uint64_t most_numbers = std::uint64_t{1} << 40;
 
-/// A text that is read word by word or line by line, and where it says so byte by byte.
+/// A text read by words, lines or bytes.
 class LegacyText {
  public:
   LegacyText(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file.string()) {}
 
   std::size_t left() const { return text_.size() - at_; }
-  /// Of the line that comes, which may be empty.
+  /// The next line, possibly empty.
   std::string_view line() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     const std::string_view line = text_.substr(at_, end - at_);
     go_to(std::min(end + 1, text_.size()));
     return stripped(line, vtk_blanks);
   }
-  /// Of the next line that has any, in capitals as they are. Empty at the end of the file.
+  /// The words of the next line that has any. Empty at the end of the file.
   std::vector<std::string_view> words_of_line() {
     skip_blanks();
     line_of_words_ = number_;
@@ -45,7 +45,7 @@ class LegacyText {
     go_to(end);
     return word;
   }
-  /// To what begins with this word of the text.
+  /// Goes back to a word of the text.
   void go_back_to(std::string_view word) { at_ = static_cast<std::size_t>(word.data() - text_.data()); }
   std::string_view bytes(std::uint64_t count) {
     if (count > left())
@@ -91,11 +91,11 @@ std::optional<RawNumber> legacy_number(std::string_view type) {
       {"vtktypefloat32", {'f', 4}}, {"vtktypefloat64", {'f', 8}}};
   const std::string lower = in_lower_case(type);
   for (const auto& [name, number] : types)
-    if (name == lower) return RawNumber{number.kind, number.bytes, true};  // the format's order of bytes
+    if (name == lower) return RawNumber{number.kind, number.bytes, true};  // the format's byte order
   return {};
 }
 
-/// Keywords may be written in any case.
+/// Keywords are case-insensitive.
 std::string in_capitals(std::string_view word) {
   std::string capitals(word);
   for (char& c : capitals)
@@ -103,7 +103,7 @@ std::string in_capitals(std::string_view word) {
   return capitals;
 }
 
-/// "%20" of a name is a blank.
+/// Decodes "%20" in a name to a blank.
 std::string decoded(std::string_view name) {
   std::string plain;
   for (std::size_t k = 0; k < name.size(); ++k) {
@@ -157,13 +157,13 @@ class LegacyReader {
                                 : components > most_numbers / rows ? most_numbers
                                                                    : rows * components;
     std::vector<double> values;
-    if (type == "bit" && is_binary_) {  // of no use for spheres
+    if (type == "bit" && is_binary_) {  // useless for spheres
       in_.bytes((count + 7) / 8);
       values.assign(count, 0);
       return values;
     }
     const std::optional<RawNumber> number = legacy_number(type);
-    if (!number && type != "bit") in_.fail(complaint_of_type(type));
+    if (!number && type != "bit") in_.fail(type_error(type));
     if (is_binary_) {
       const auto bytes = static_cast<std::uint64_t>(number->bytes);
       append_raw_numbers(in_.bytes(count > most_numbers / 8 ? most_numbers : count * bytes), *number, values);
@@ -204,16 +204,16 @@ class LegacyReader {
     need(words, 3);
     if (std::exchange(has_points_, true)) in_.fail("a second section POINTS; leave one of them in the file");
     count_ = in_.whole(words[1]);
-    if (words.size() > 3) in_.go_back_to(words[3]);  // all numbers in one line
+    if (words.size() > 3) in_.go_back_to(words[3]);  // all numbers are in one line
     points_.places = numbers(std::string(words[2]), count_, 3);
   }
 
-  /// The cells, of which only vertices are of use: faces make corners of the points.
+  /// Reads the cells; only vertices are accepted, because faces mean that the points are corners.
   void take_cells(const std::vector<std::string_view>& words) {
     need(words, 3);
     const std::string word = in_capitals(words[0]);
     const std::uint64_t cells = in_.whole(words[1]), numbers_of_cells = in_.whole(words[2]);
-    if ((word == "POLYGONS" || word == "TRIANGLE_STRIPS") && cells > 0) in_.fail(complaint_of_faces(cells));
+    if ((word == "POLYGONS" || word == "TRIANGLE_STRIPS") && cells > 0) in_.fail(faces_error(cells));
     if (!is_offsets_) {
       numbers("int", numbers_of_cells, 1);
       return;
@@ -230,7 +230,7 @@ class LegacyReader {
     need(words, 2);
     const std::vector<double> types = numbers("int", in_.whole(words[1]), 1);
     const auto faces = std::ranges::count_if(types, is_face);
-    if (faces > 0) in_.fail(complaint_of_faces(static_cast<std::uint64_t>(faces)));
+    if (faces > 0) in_.fail(faces_error(static_cast<std::uint64_t>(faces)));
   }
   void take_section(const std::vector<std::string_view>& words) {
     need(words, 2);
@@ -241,7 +241,7 @@ class LegacyReader {
                            count_));
   }
 
-  /// A heading of several arrays, each with its own.
+  /// Reads a field of several arrays, each with a heading.
   void take_field(const std::vector<std::string_view>& words) {
     need(words, 3);
     for (std::uint64_t k = 0, arrays = in_.whole(words[2]); k < arrays; ++k) {

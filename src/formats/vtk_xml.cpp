@@ -19,10 +19,10 @@ namespace {
 
 constexpr std::string_view appended_tag = "<AppendedData";
 constexpr std::uint64_t most_rows = std::uint64_t{1} << 40, most_components = 1 << 12;
-/// No byte of zlib's stands for more.
+/// zlib's largest ratio.
 constexpr std::uint64_t most_inflated = 1032;
 
-/// "Float32"; none of "String".
+/// "Float32"; absent for "String".
 std::optional<RawNumber> xml_number(std::string_view type, bool is_swapped) {
   RawNumber number{.is_swapped = is_swapped};
   for (const auto& [word, kind] : {std::pair{"Float", 'f'}, {"UInt", 'u'}, {"Int", 'i'}}) {
@@ -37,7 +37,7 @@ std::optional<RawNumber> xml_number(std::string_view type, bool is_swapped) {
   return {};
 }
 
-/// What stands in a file besides its tags.
+/// Reads the data in an XML file.
 class XmlReader {
  public:
   XmlReader(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file.string()) {}
@@ -58,7 +58,7 @@ class XmlReader {
   }
 
  private:
-  /// What is appended is no XML, and stands at the end.
+  /// Appended data are not XML, and come last.
   void parse() {
     const std::size_t at = text_.find(appended_tag);
     std::string head(text_.substr(0, at));
@@ -119,7 +119,7 @@ class XmlReader {
     const std::uint64_t rows = whole(piece, "NumberOfPoints", {}, most_rows);
     for (const char* faces : {"NumberOfPolys", "NumberOfStrips"})
       if (const std::uint64_t count = whole(piece, faces, 0, most_rows); count > 0)
-        fail_at(piece, complaint_of_faces(count));
+        fail_at(piece, faces_error(count));
     if (rows == 0) return;
     if (const pugi::xml_node cells = piece.child("Cells")) {
       const pugi::xml_node types = cells.find_child_by_attribute("DataArray", "Name", "types");
@@ -127,7 +127,7 @@ class XmlReader {
       if (types && count > 0) {
         const std::vector<double> kinds = values_of(types, count, 1);
         const auto solids = std::ranges::count_if(kinds, is_face);
-        if (solids > 0) fail_at(types, complaint_of_faces(static_cast<std::uint64_t>(solids)));
+        if (solids > 0) fail_at(types, faces_error(static_cast<std::uint64_t>(solids)));
       }
     }
     const pugi::xml_node places = piece.child("Points").child("DataArray");
@@ -172,7 +172,7 @@ class XmlReader {
     if (format == "ascii") return numbers_in_text(node, count);
     const std::string_view type = node.attribute("type").value();
     const std::optional<RawNumber> number = xml_number(type, is_swapped_);
-    if (!number) fail_at(node, complaint_of_type(type));
+    if (!number) fail_at(node, type_error(type));
     std::string_view source = node.child_value();
     bool is_base64 = true;
     if (format == "appended") {
@@ -209,7 +209,7 @@ class XmlReader {
     return values;
   }
 
-  /// Bytes as they stand in the file.
+  /// Bytes as encoded in the file.
   struct Encoded {
     std::string_view text;
     bool is_base64;
@@ -218,7 +218,7 @@ class XmlReader {
     }
   };
 
-  /// So many counts that lead the data.
+  /// The leading counts of the data.
   std::vector<std::uint64_t> counts(const pugi::xml_node& node, const Encoded& from,
                                     std::uint64_t many) const {
     const std::string bytes = from.first(many * header_bytes());
@@ -232,7 +232,7 @@ class XmlReader {
     return all;
   }
 
-  /// One count of bytes, then the bytes.
+  /// A count of bytes, then the bytes.
   std::string plain_bytes(const pugi::xml_node& node, const Encoded& from, std::uint64_t expected) const {
     const std::uint64_t said = counts(node, from, 1)[0];
     if (said != expected) refuse_length(node, said, expected);
@@ -242,7 +242,7 @@ class XmlReader {
     return bytes;
   }
 
-  /// The number of blocks, the bytes of one and of the last, then those that each has compressed, then these.
+  /// The number of blocks, the sizes of a block and of the last one, the compressed sizes, then the blocks.
   std::string inflated(const pugi::xml_node& node, const Encoded& from, std::uint64_t expected) const {
     const std::vector<std::uint64_t> lead = counts(node, from, 3);
     const std::uint64_t blocks = lead[0], in_block = lead[1], in_last = lead[2];

@@ -7,7 +7,7 @@
 namespace bernal {
 namespace {
 
-/// What ymport.textExt takes first, and the cell, which bernal says in a remark.
+/// The first word that ymport.textExt expects, and the cell, which bernal writes in a remark.
 constexpr std::string_view format_mark = "#format", plain_rows = "x_y_z_r", cell_mark = "O.cell.setBox(";
 
 void write_yade(const Exported& file, TextFile& out) {
@@ -20,7 +20,7 @@ void write_yade(const Exported& file, TextFile& out) {
             file.spheres.r[i], '\n');
 }
 
-/// The cell of "# O.periodic = True; O.cell.setBox(3, 4, 5)", which is how bernal says it.
+/// The cell of "# O.periodic = True; O.cell.setBox(3, 4, 5)", as bernal writes it.
 std::optional<FileBox> cell_in(const ForeignLines& lines) {
   const std::size_t at = lines.line().find(cell_mark);
   if (at == std::string_view::npos) return {};
@@ -36,7 +36,7 @@ std::optional<FileBox> cell_in(const ForeignLines& lines) {
 FileContents read_yade(const Reading& reading) {
   ForeignLines lines(reading);
   FileContents contents;
-  std::vector<std::string> names = {"x", "y", "z", "r"};  // as textExt takes it, if nothing is said
+  std::vector<std::string> names = {"x", "y", "z", "r"};  // textExt's default
   std::optional<SphereColumns> columns;
   std::size_t in_row = 0, left_out = 0;
   std::vector<std::string_view> row;
@@ -56,7 +56,7 @@ FileContents read_yade(const Reading& reading) {
         contents.box = std::move(box);
       }
       split_at(line, " \t,", row);
-      if (columns && lines.is_row_left_out(row, in_row)) ++left_out;
+      if (columns && lines.is_commented_row(row, in_row)) ++left_out;
       continue;
     }
     if (!columns) {

@@ -10,21 +10,21 @@
 
 namespace bernal {
 
-/// In place of the number of a triangle, a vertex or a piece.
+/// Instead of the number of a triangle, a vertex or a piece.
 inline constexpr std::uint32_t no_index = 0xFFFFFFFF;
 
 /// A triangle at an edge.
 struct EdgeUse {
   std::uint32_t low, high;  ///< the ends of the edge, low <= high
   std::uint32_t triangle;
-  std::uint8_t side;  ///< the edge runs from this corner of the triangle to the next one
-  bool upwards;       ///< it runs from low to high there
+  std::uint8_t side;  ///< the edge runs from this corner of the triangle to the next
+  bool upwards;       ///< it runs from low to high in the triangle
 
   bool is_of_edge(const EdgeUse& other) const { return low == other.low && high == other.high; }
 };
 
-/// The edges of triangles, each with the triangles at it: one array, sorted by the ends of the edges, and for
-/// an edge by its triangles. Cost: O(T log T), 48 bytes a triangle.
+/// The edges of triangles, each with its triangles, in one array sorted by the ends of the edges and then by
+/// triangle. Cost: O(T log T), 48 bytes a triangle.
 class MeshEdges {
  public:
   explicit MeshEdges(std::span<const FaceCorners> triangles);
@@ -40,7 +40,7 @@ class MeshEdges {
     }
   }
 
-  /// How many triangles have the edge between two vertices. Cost: O(log T).
+  /// Number of triangles with the edge between two vertices. Cost: O(log T).
   std::size_t triangles_at(std::uint32_t a, std::uint32_t b) const;
 
  private:
@@ -52,9 +52,9 @@ std::vector<EdgeUse> open_edges(std::span<const FaceCorners> triangles);
 
 using SharpEdges = std::vector<std::array<std::uint32_t, 2>>;
 
-/// The edges by which a shape is recognised, in the order of their ends: those with other than two triangles,
-/// those that bend by more than 30 degrees, and those for whose unit normals `also` holds; of more than
-/// `most` the longest. A triangle without area bends nothing. Cost: O(T log T).
+/// The edges that show a shape, sorted by their ends: those with other than two triangles, those that bend by
+/// more than 30 degrees, and those whose two unit normals satisfy `also`; if more than `most`, only the
+/// longest. A triangle without area does not bend an edge. Cost: O(T log T).
 SharpEdges sharp_edges(const Mesh&, std::size_t most,
                        const std::function<bool(const Vector<3>&, const Vector<3>&)>& also = {});
 

@@ -8,7 +8,7 @@
 
 namespace bernal {
 
-/// Numbers points of three coordinates by value, -0 as 0, in the order in which they are first asked for.
+/// Numbers points in three dimensions by value, with -0 as 0, in order of first occurrence.
 template <class Point>
 class PointNumbers {
  public:
@@ -19,13 +19,13 @@ class PointNumbers {
     return entry->second;
   }
 
-  std::vector<Point> points;  ///< each as it was first asked for
+  std::vector<Point> points;  ///< in order of first occurrence
 
  private:
   boost::unordered_map<std::array<double, 3>, std::uint32_t> number_;
 };
 
-/// Numbers the corners of triangles anew, by a function of their numbers.
+/// Maps the corners of triangles by a function of their numbers.
 template <class Triangles, class NumberOf>
 void renumber(Triangles& triangles, const NumberOf& number_of) {
   for (auto& t : triangles)

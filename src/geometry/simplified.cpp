@@ -10,7 +10,7 @@
 namespace bernal {
 namespace {
 
-/// The mesh whose corners are one where they lie in one cell of a grid: the mean of them.
+/// The mesh with the corners in each cell of a grid merged into their mean.
 Mesh gathered(const Mesh& mesh, const Bounds<3>& bounds, double cell) {
   using Cell = std::array<std::int64_t, 3>;
   std::vector<std::pair<Cell, std::uint32_t>> order;
@@ -34,7 +34,7 @@ Mesh gathered(const Mesh& mesh, const Bounds<3>& bounds, double cell) {
   for (const auto& [a, b, c] : mesh.triangles) {
     std::array<std::uint32_t, 3> t = {becomes[a], becomes[b], becomes[c]};
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    std::ranges::rotate(t, std::ranges::min_element(t));  // the same corners, the same triangle
+    std::ranges::rotate(t, std::ranges::min_element(t));  // canonical order of the corners
     coarse.triangles.push_back(t);
   }
   std::ranges::sort(coarse.triangles);
@@ -48,7 +48,7 @@ Mesh gathered(const Mesh& mesh, const Bounds<3>& bounds, double cell) {
 Mesh simplified(const Mesh& mesh, std::size_t most) {
   if (mesh.triangles.size() <= most) return mesh;
   const Bounds<3> bounds = bounds_of(mesh);
-  // A surface crosses about 4 n² of the cells of an n x n x n grid over it, with two triangles in each.
+  // A surface crosses about 4 n² cells of an n x n x n grid over it, with two triangles in each.
   double cells = std::max(2.0, std::sqrt(static_cast<double>(most) / 4));
   constexpr double coarser = 0.8;
   for (;; cells *= coarser) {

@@ -5,9 +5,8 @@
 
 namespace bernal {
 
-/// A mesh of at most `most` triangles, or few more, that looks like the one given: its corners are gathered
-/// in the cells of a grid, as coarse as it takes, and what becomes of no area is left out. Not for packing.
-/// Cost: O(T) a grid, some of them.
+/// A mesh of about `most` triangles at most that looks like the given one: corners in one cell of a grid are
+/// merged, and triangles without area are dropped. Not for packing. Cost: O(T) a grid; a few grids are tried.
 Mesh simplified(const Mesh& mesh, std::size_t most);
 
 }  // namespace bernal

@@ -11,20 +11,19 @@
 
 namespace bernal {
 
-/// The events to come of a number of things, one for each: a calendar queue over one period.
+/// The pending events of a number of objects, one for each: a calendar queue over one period.
 ///
-/// The period [0, horizon) is cut into days of equal length. Of a day to come only the ids are noted that
-/// have been scheduled for it, one behind the other; those that are scheduled anew stay noted where they
-/// were, and are passed over there. When a day comes, its events are sorted; what is scheduled for that same
-/// day later on waits in a heap. So scheduling writes to the ends of days soon to come, which caches keep
-/// however many things there are, and what comes up next is known far ahead. Events at or beyond the horizon
-/// are remembered and never come up: who starts the next period asks for all events anew. Events at the same
-/// time come up in the order of their ids.
+/// The period [0, horizon) is divided into days of equal length. For a future day only the ids scheduled for
+/// it are noted, one after the other; an id that is rescheduled remains in its old note and is skipped there.
+/// When a day begins, its events are sorted; events scheduled later for the same day go to a heap. So
+/// scheduling writes to the ends of near days, which stay in the caches for any number of objects, and
+/// upcoming events are known far ahead. Events at or beyond the horizon are stored but never come up: the
+/// caller schedules all events anew for the next period. Simultaneous events come up in the order of their
+/// ids.
 ///
-/// Cost: O(1) to schedule, and O(log d) for `next`, d being the events of a day, as long as about as many
-/// come up in the period as expected, spread evenly; O(log n) however they lie. Memory: 16 bytes a thing, and
-/// about 16 for what is noted, at most 40. Source: Paul, J. Comput. Phys. 221, 615 (2007), without its linked
-/// lists.
+/// Cost: O(1) to schedule, and O(log d) for `next` with d events a day, if about as many events as expected
+/// occur, evenly spread; O(log n) in any case. Memory: 16 bytes an object, and about 16 for notes, at most
+/// 40. Source: Paul, J. Comput. Phys. 221, 615 (2007), without its linked lists.
 class Calendar {
  public:
   using Id = std::uint32_t;
@@ -47,10 +46,10 @@ class Calendar {
   }
 
   double time(Id id) const { return events_[id].time; }
-  /// What the event is: whatever was scheduled.
+  /// The event's kind, as scheduled.
   Id what(Id id) const { return events_[id].what; }
 
-  /// Replaces the event of `id`. Precondition: time is not before that of the event which came up last.
+  /// Replaces the event of `id`. Precondition: time is not before that of the last event that came up.
   void schedule(Id id, double time, Id what) {
     events_[id] = {time, what};
     if (!(time < horizon_)) return;
@@ -61,7 +60,7 @@ class Calendar {
     if (late_.size() > most_noted * (events_.size() + least_a_day)) drop_what_fell_today();
   }
 
-  /// Whose event is the earliest, or `none` if there is none before the horizon. It stays scheduled.
+  /// The object with the earliest event, or `none` if there is none before the horizon. It stays scheduled.
   Id next() {
     for (;;) {
       while (at_ < today_.size() && !stands(today_[at_])) ++at_;
@@ -77,26 +76,25 @@ class Calendar {
     }
   }
 
-  /// That it has at the moment.
+  /// Memory in use.
   std::size_t bytes() const {
     return events_.capacity() * sizeof(Event) + days_.capacity() * sizeof(Day) +
            notes_.capacity() * sizeof(Note) + (today_.capacity() + late_.capacity()) * sizeof(Entry) +
            noted_today_.capacity() * sizeof(Id);
   }
 
-  /// For who wants to ask the memory for what the next events will need: how many days have begun, how many
-  /// of today's events are over, and the one that comes up as the k-th of today unless something comes in
-  /// between, or `none`.
+  /// For prefetching: the number of days begun, of today's events that are over, and the object of today's
+  /// k-th event (unless others come in between), or `none`.
   std::size_t day() const { return begun_; }
   std::size_t over() const { return at_; }
   Id of_today(std::size_t k) const { return k < today_.size() ? today_[k].id : none; }
   void prefetch(Id id) const { bernal::prefetch(&events_[id]); }
 
  private:
-  /// Events of a day: few, so that they stay in the first cache while they are sorted and few are scheduled
-  /// for the day at hand; and not so few that the ends of all days that are written to leave the second one.
+  /// Events a day: few enough that they fit the first-level cache while they are sorted and few are scheduled
+  /// for the current day; not so few that the ends of all days in use exceed the second-level cache.
   static constexpr std::size_t days_a_round = 32, least_a_day = 16, most_a_day = 512;
-  /// Of all noted ids, for each thing: with more, those that no longer stand are dropped.
+  /// Noted ids for each object; beyond this, outdated ones are dropped.
   static constexpr std::size_t most_noted = 6;
 
   struct Event {
@@ -114,7 +112,7 @@ class Calendar {
   };
   struct Day {
     std::uint32_t note = none;
-    std::uint32_t free = 0;  // places in that note
+    std::uint32_t free = 0;  // free entries in that note
   };
 
   static bool later(const Entry& a, const Entry& b) {
@@ -144,7 +142,7 @@ class Calendar {
     }
     notes_[day.note].ids[--day.free] = id;
   }
-  /// Calls visit(id) for what is noted for a day, whose notes become free.
+  /// Calls visit(id) for the ids noted for a day, and frees its notes.
   template <class Visit>
   void take_notes(Day& day, Visit&& visit) {
     std::uint32_t used = day.free;
@@ -188,7 +186,7 @@ class Calendar {
     }
   }
 
-  /// What is sorted is a heap.
+  /// A sorted range is a heap.
   void drop_what_fell_today() {
     std::erase_if(late_, [&](const Entry& entry) { return !stands(entry); });
     std::ranges::sort(late_, [](const Entry& a, const Entry& b) { return later(b, a); });
@@ -200,11 +198,11 @@ class Calendar {
   LargePageVector<Event> events_;
   std::vector<Day> days_;
   LargePageVector<Note> notes_;
-  std::uint32_t free_ = none;        // the first note that is no day's
-  std::size_t noted_ = 0;            // places in the notes of all days
+  std::uint32_t free_ = none;        // the first unused note
+  std::size_t noted_ = 0;            // entries in the notes of all days
   std::vector<Entry> today_, late_;  // sorted; a heap
   std::vector<Id> noted_today_;
-  std::size_t at_ = 0, begun_ = 0;  // in today_; the days that have begun, the last of which is today
+  std::size_t at_ = 0, begun_ = 0;  // index in today_; days begun, the last of which is today
   double horizon_ = 0;
   double days_per_time_ = 0;
 };

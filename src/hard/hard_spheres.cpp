@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/tolerance.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "hard/place_on_curve.hpp"
 #include "hard/prefetch.hpp"
 

@@ -18,71 +18,70 @@
 
 namespace bernal {
 
-/// What happened in a period of `HardSpheres`.
+/// Statistics of a period of `HardSpheres`.
 struct FlightPeriod {
   using ArchivedAsBytes = void;
-  double time = 0;                ///< the caller's length over the thermal speed
+  double time = 0;                ///< in units of the caller's length over the thermal speed
   std::uint64_t collisions = 0;   ///< of pairs
   std::uint64_t reflections = 0;  ///< of spheres from walls
   std::uint64_t departures = 0;   ///< of spheres from their shells
-  std::uint64_t builds = 0;       ///< of the lists of all spheres
+  std::uint64_t builds = 0;       ///< of all lists
   std::uint64_t predictions = 0;  ///< scans of all neighbours of a sphere
   std::uint64_t scanned = 0;      ///< neighbours in all of them
-  /// P V / N k T by the temperature at the start, from the virial theorem: 1 + Σ q b / 2 E t over all
-  /// momenta q that were exchanged, along b: the line of centres of a pair, the radius at a wall. On average
-  /// it is the pressure on the walls, but scatters less.
+  /// P V / N k T at the initial temperature, from the virial theorem: 1 + Σ q b / 2 E t over all exchanged
+  /// momenta q, along b: the line of centres of a pair, the radius at a wall. On average it is the pressure
+  /// on the walls, but it scatters less.
   double compressibility_factor = 1;
-  /// That walls took, sum of magnitudes: on average P times their area and the time.
+  /// Momentum received by walls, sum of magnitudes: on average P times their area and the time.
   double wall_momentum = 0;
   double heating = 0;    ///< relative growth of the kinetic energy
-  bool stopped = false;  ///< it was told to stop
+  bool stopped = false;  ///< the monitor stopped it
 };
 
-/// What the events of all periods took: those of collisions with what they let look again.
+/// Times of the events of all periods; those of collisions include renewed predictions.
 struct FlightTimes {
   using ArchivedAsBytes = void;
   EventClock collisions, reflections, departures;
   double builds = 0;  ///< seconds
 };
 
-/// What `HardSpheres` may be told.
+/// Options of `HardSpheres`.
 template <int D>
 struct HardSphereOptions {
-  /// No sphere leaves the region within. Precondition: along an axis that they close, the region and a
-  /// largest diameter, at the size that spheres grow to, are no longer than the edge.
+  /// No sphere leaves the region between them. Precondition: along an axis that they close, the region plus a
+  /// largest diameter, at the final size, is no longer than the edge.
   std::vector<Wall<D>> walls = {};
   Masses masses = Masses::equal;
   const CollisionKernel<D>* kernel = nullptr;  ///< the fastest if absent
 };
 
 /// Event-driven dynamics of hard spheres that grow in a periodic box or between walls in it (Lubachevsky &
-/// Stillinger; Kansal, Torquato & Stillinger): they fly freely until two touch; then they exchange momentum
-/// along the line of centres, elastically with respect to their growing surfaces, v_n -> 2 s' - v_n for the
-/// relative velocity v_n of centres and the growth s' of the sum of radii.
+/// Stillinger; Kansal, Torquato & Stillinger): spheres fly freely until two touch; then they exchange
+/// momentum along the line of centres, elastically relative to their growing surfaces, v_n -> 2 s' - v_n for
+/// the relative velocity v_n of centres and the growth s' of the sum of radii.
 ///
-/// All radii are the given ones times `size()`, which grows linearly in time: the size distribution stays
-/// what it is. Lengths are the caller's; the unit of mass is the mean mass m, that of velocity the thermal
-/// speed √(k T / m), to which a period starts by rescaling all velocities wherever spheres grow. Time starts
-/// anew with each period, so that nothing is lost to the rounding of long times.
+/// All radii are the given ones times `size()`, which grows linearly in time, so the size distribution does
+/// not change. Lengths are in the caller's unit; the unit of mass is the mean mass m, that of velocity the
+/// thermal speed √(k T / m), to which all velocities are rescaled at the start of a period if spheres grow.
+/// Each period starts at time zero, which avoids the rounding of long times.
 ///
 /// Invariant: at the end of a period no two spheres overlap by more than rounding, about 1e-15 edges.
-/// Precondition: `has_room`, no period may start without; there are spheres.
-/// Cost: for 10,000 equal spheres 0.8 µs a collision in a fluid, 0.5 near jamming; twice that for lognormal
-/// sizes of sigma 0.5. 10^6 cost some 1.5 times as much: events come up at places in no order, so all that they
-/// read, some 46 lines of 64 bytes a collision, has to come from the memory, however early it is asked for.
-/// Memory about 350 bytes a sphere.
-/// One thread; the same bits on every x86-64.
+/// Precondition: `has_room` at the start of each period; at least one sphere. Cost: for 10,000 equal spheres
+/// 0.8 µs a collision in a fluid, 0.5 near jamming; twice that for lognormal sizes of sigma 0.5. For 10^6
+/// about 1.5 times as much: events occur at random places, so all that they read, about 46 cache lines a
+/// collision, comes from memory in spite of prefetching. Memory about 350 bytes a sphere. One thread; the
+/// same bits on every x86-64.
 template <int D>
 class HardSpheres {
  public:
-  /// Centres in [0, edge), free of overlap at size 1 and within the walls; velocities are drawn uniformly,
-  /// without drift unless there are walls or only one sphere: after a few collisions they have Maxwell's
+  /// Centres in [0, edge), without overlap at size 1 and inside the walls; velocities are drawn uniformly,
+  /// without drift unless there are walls or a single sphere: after a few collisions they have Maxwell's
   /// distribution.
   HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, Random random,
               HardSphereOptions<D> options = {});
 
-  /// Lets the spheres fly for some 16 collisions each, or until they have reached the size `largest`, have
-  /// jammed, or are told to stop. `growth` is that of the mean diameter over the thermal speed.
+  /// Lets the spheres fly for about 16 collisions each, or until they reach the size `largest`, jam, or the
+  /// monitor stops. `growth` is that of the mean diameter over the thermal speed.
   FlightPeriod fly(double growth, double largest = std::numeric_limits<double>::infinity(),
                    const Monitor& monitor = {});
 
@@ -90,25 +89,25 @@ class HardSpheres {
 
   std::size_t count() const { return spheres_.size(); }
   double size() const { return size_; }
-  /// Of all spheres, in units of m k T / m = 1.
+  /// Total over all spheres, in units of m k T / m = 1.
   double kinetic_energy() const;
-  /// Centres in [0, edge), in the order given; radii are left as they are.
+  /// Centres in [0, edge), in the caller's order; radii do not change.
   void write_to(Spheres<D>& spheres) const;
 
-  /// Of a box, in largest diameters: so that no sphere meets two images of a neighbour.
+  /// Least edge of a box in largest diameters, so that no sphere meets two images of a neighbour.
   static constexpr double smallest_edge = 2.5;
-  /// Its state between two periods, in one that was made of as many spheres, with the same radii and walls.
+  /// Its state between two periods, for an object made with the same number of spheres, radii and walls.
   void archive(Archive& a) {
     a(spheres_, original_, shells_, walls_, size_, growth_, horizon_, freedom_, largest_listed_, times_,
       period_, listed_collisions_, listed_departures_);
   }
 
-  /// Whether the box is still that large.
+  /// Whether the box is still large enough.
   bool has_room() const { return edges_.minCoeff() >= smallest_edge * 2 * largest_radius_ * size_; }
 
  private:
   using Id = std::uint32_t;
-  /// Events that are no collisions.
+  /// Events other than collisions.
   static constexpr Id look_again = Calendar::none, leave = Calendar::none - 1,
                       touch_wall = Calendar::none - 2;
   static bool is_partner(Id what) { return what < touch_wall; }
@@ -123,7 +122,8 @@ class HardSpheres {
     calendar_.schedule(i, time, what);
     spheres_[i].event = time;
   }
-  /// Whether i and its partner are still to meet: the other may have found an earlier one.
+  /// Whether i and its partner still expect to collide with each other: the other may have found an earlier
+  /// event.
   bool is_mutual(Id i, Id partner) const {
     return calendar_.what(partner) == i && calendar_.time(partner) == calendar_.time(i);
   }
@@ -144,7 +144,7 @@ class HardSpheres {
 
   const Made made_{"growth"};
   LargePageVector<FlyingSphere<D>> spheres_;
-  std::vector<Id> original_;  // the place of each in the caller's order
+  std::vector<Id> original_;  // index of each in the caller's order
   Vector<D> edges_;
   CollisionKernel<D> kernel_;
   Shells<D> shells_;
@@ -161,10 +161,10 @@ class HardSpheres {
   double freedom_;             // radius of the shells
   double largest_listed_ = 0;  // size up to which the lists hold
   double now_ = 0;
-  std::size_t prefetched_day_ = 0, prefetched_ = 0;  // the memory was asked for so many of that day's events
+  std::size_t prefetched_day_ = 0, prefetched_ = 0;  // that day's events up to this one were prefetched
 
   FlightTimes times_;
-  FlightPeriod period_;                                          // the last one, or the one at hand
+  FlightPeriod period_;                                          // the last or current one
   double virial_ = 0;                                            // sum over the period's collisions
   std::uint64_t listed_collisions_ = 0, listed_departures_ = 0;  // since the lists were built
 };

@@ -15,23 +15,23 @@
 
 namespace bernal {
 
-/// A background grid of a periodic box that keeps, unlike `CellGrid`, the points and reaches themselves,
-/// those of a cell in one line of the cache: for points that move now and then and are asked for their
-/// neighbours as often, when nothing of it is in the caches. For that it rounds them: places to 2^-16 of a
-/// cell's edge, reaches up to 2^-16 of the cells' largest.
+/// A background grid of a periodic box that, unlike `CellGrid`, stores the points and reaches themselves,
+/// those of a cell in one cache line: for points that move now and then and query their neighbours as often,
+/// with nothing in the caches. It rounds them: positions to 2^-16 of a cell's edge, reaches up to 2^-16 of
+/// the cells' largest.
 ///
-/// What it buys: to be filled and asked once for each point in no order takes 0.8 of the time of a `CellGrid`
-/// for 10^4 points in three dimensions, 0.6 for 10^5, 0.45 for 10^6 (tests/bench/near_bench.cpp).
+/// Benefit: filling it and one query for each point in random order takes 0.8 of the time of a `CellGrid` for
+/// 10^4 points in three dimensions, 0.6 for 10^5, 0.45 for 10^6 (tests/bench/near_bench.cpp).
 ///
 /// Level l holds the points with reaches in (R_l / 2, R_l], R_l = R / 2^l, in cells of edge 2 R_l or more.
-/// Cost: `insert` and `move` O(1), a query the points of some 3^D cells a level. Memory: 64 bytes a cell, of
-/// which a level has at most half as many as points, and for each further line of a crowded one; 4 a point.
+/// Cost: `insert` and `move` O(1), a query the points of about 3^D cells a level. Memory: 64 bytes a cell (a
+/// level has at most half as many cells as points) and for each further line of a crowded cell; 4 a point.
 template <int D>
 class HomeGrid {
  public:
   using Id = std::uint32_t;
 
-  /// For points to come: of each the reach.
+  /// Prepares for points with these reaches.
   void start(const Vector<D>& edges, std::span<const double> reaches) {
     edges_ = edges;
     for (int k = 0; k < D; ++k) inverse_edges_[k] = 1 / edges[k];
@@ -67,7 +67,7 @@ class HomeGrid {
                            for_each_in<false>(level, c, corner, reach, visit);
                        });
   }
-  /// Asks the memory for all that such a query will look at.
+  /// Prefetches the memory for such a query.
   void prefetch_near(const Vector<D>& home, double reach) const {
     for_each_cell_near(home, reach,
                        [&](const Level&, std::size_t c, const auto&, bool) { bernal::prefetch(&lines_[c]); });
@@ -81,7 +81,7 @@ class HomeGrid {
   static constexpr double steps = 1 << 16, reach_steps = steps - 2;  // of a cell's edge, of the largest reach
   static constexpr std::uint32_t a_line = 60 / (2 * D + 6);
 
-  /// Points of a cell. More than it has room for stand in further lines, all of them full, that are chained
+  /// The points of a cell. If there are too many, the others are in further lines, all of them full, chained
   /// to the cell's own.
   struct alignas(64) Line {
     using ArchivedAsBytes = void;
@@ -98,11 +98,11 @@ class HomeGrid {
     std::size_t points = 0;
     std::array<int, D> cells = {};
     std::array<double, D> inverse = {}, width = {};  // of a cell's edge
-    double margin = 0;  // what the sum of two reaches is longer by: places are rounded
+    double margin = 0;  // added to the sum of two reaches, because positions are rounded
     std::size_t begin = 0;
   };
 
-  /// Into cells, which are numbered from `begin` on. Returns how many.
+  /// Divides a level into cells, numbered from `begin`. Returns their number.
   std::size_t divide(Level& level, std::size_t begin) const {
     const double most_cells = std::max(64.0, cells_a_point * static_cast<double>(level.points));
     level.begin = begin;
@@ -116,7 +116,7 @@ class HomeGrid {
         all *= level.cells[k];
       }
       if (all > most_cells) continue;
-      level.margin = std::sqrt(squared) / steps;  // twice half a step, to have room for rounding
+      level.margin = std::sqrt(squared) / steps;  // twice half a step, with a reserve for rounding
       return static_cast<std::size_t>(all);
     }
   }
@@ -148,7 +148,7 @@ class HomeGrid {
     ++line.count;
     cell_of_[id] = static_cast<std::uint32_t>(c);
   }
-  /// The last point of the cell's own line takes its place.
+  /// Replaces it by the last point of the cell's own line.
   void remove(Id id, std::size_t c) {
     Line& line = lines_[c];
     const std::uint32_t last = line.count - 1;
@@ -175,9 +175,9 @@ class HomeGrid {
     }
     return std::exchange(free_, std::uint32_t{lines_[free_].next});
   }
-  /// Calls visit(level, c, corner, all_around) for all cells that such points may lie in, row by row. The
-  /// corner is the lower one as seen from home, in the image of the cell that is near it. If the cells go all
-  /// around the box along some axis there may be two of these; else a point has no other that is near.
+  /// Calls visit(level, c, corner, all_around) for all cells that may contain near points, row by row. The
+  /// corner is the cell's lower one relative to home, in its near image. If the cells span the box along some
+  /// axis there may be two near images; otherwise each point has only one.
   template <class Visit>
   void for_each_cell_near(const Vector<D>& home, double reach, Visit&& visit) const {
     for (const Level& level : levels_) {
@@ -220,8 +220,8 @@ class HomeGrid {
       }
     }
   }
-  /// The near ones of a cell. Those of a line are found without a branch for each point: about half of them
-  /// are near.
+  /// Visits the near points of a cell. Those of a line are found without a branch for each point, because
+  /// about half of them are near.
   template <bool all_around, class Visit>
   void for_each_in(const Level& level, std::size_t c, const std::array<double, D>& corner, double reach,
                    Visit& visit) const {
@@ -255,7 +255,7 @@ class HomeGrid {
   std::array<double, D> inverse_edges_{};
   std::vector<Level> levels_;
   LargePageVector<Line> lines_;  // of all cells, then further ones
-  std::uint32_t free_ = 0;       // of the further ones, chained; 0: none
+  std::uint32_t free_ = 0;       // first unused further line; 0: none
   LargePageVector<std::uint32_t> cell_of_;
 };
 

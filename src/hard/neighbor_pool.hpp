@@ -11,8 +11,8 @@
 
 namespace bernal {
 
-/// Lists of neighbours without order, one behind the other; one that needs more room moves to the end. Who
-/// made a list keeps where it stands, beside what else there is to be read of its owner.
+/// Unordered lists of neighbours in one array; a list that needs more space moves to the end. The caller
+/// keeps each list's position with the other data of its owner.
 class NeighborPool {
  public:
   using Id = std::uint32_t;
@@ -22,14 +22,14 @@ class NeighborPool {
     std::uint32_t count = 0, room = 0;
   };
 
-  /// Without lists, of which `lists` are to come, with room for about `expected` neighbours each.
+  /// Clears, for `lists` lists of about `expected` neighbours each.
   void start(std::size_t lists, double expected) {
     lines_a_list_ = std::max(std::size_t{1}, static_cast<std::size_t>(1.5 * expected / a_line));
     lines_.clear();
     lines_.reserve(lists * lines_a_list_);
     longest_ = 0;
   }
-  /// An empty one.
+  /// Creates an empty list.
   List make() {
     const std::size_t begin = lines_.size() * a_line;
     lines_.resize(lines_.size() + lines_a_list_);

@@ -6,8 +6,8 @@
 
 namespace bernal {
 
-/// Where a point lies on a Z-order curve through the box: points that are near each other in space come to
-/// lie near each other on it. Precondition: in [0, edge).
+/// The position of a point on a Z-order curve through the box: points close in space are mostly close on the
+/// curve. Precondition: in [0, edge).
 template <int D>
 std::uint64_t place_on_curve(const Vector<D>& point, const Vector<D>& edges) {
   constexpr int bits = 63 / D;

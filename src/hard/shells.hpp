@@ -13,22 +13,22 @@
 
 namespace bernal {
 
-/// Near-neighbour lists that each sphere renews for itself: every sphere has a home, and is free to fly
-/// within a shell around it, its `freedom`; neighbours are all that it could meet before one of the two has
-/// left its shell. Leaving is an event: `settle` gives the sphere a new home and mends its list and those of
-/// the others.
+/// Near-neighbour lists that each sphere renews separately: every sphere has a home and may fly within a
+/// shell around it, of size `freedom`; its neighbours are all spheres that it could meet before either leaves
+/// its shell. Leaving is an event: `settle` gives the sphere a new home and updates its list and those of the
+/// others.
 ///
-/// Invariant: two spheres are neighbours, each in the list of the other, if their homes are nearer than the
-/// sum of their radii and freedoms, minimum image, and only if they are not farther than that by more than
-/// what `HomeGrid` rounds. Cost: `build` and `settle` about 1 µs a sphere where sizes are alike; memory
-/// about 300 bytes a sphere. Source: Donev, Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005), with
-/// shells of their own size.
+/// Invariant: two spheres are in each other's list if their homes are nearer than the sum of their radii and
+/// freedoms, minimum image, and only if they are not farther than that by more than the rounding of
+/// `HomeGrid`. Cost: `build` and `settle` about 1 µs a sphere of similar sizes; memory about 300 bytes a
+/// sphere. Source: Donev, Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005), with individual shell
+/// sizes.
 template <int D>
 class Shells {
  public:
   using Id = std::uint32_t;
 
-  /// `radii` are the largest that the spheres grow to while these lists last; homes lie in [0, edge).
+  /// `radii` are the largest that the spheres reach with these lists; homes lie in [0, edge).
   void build(const std::vector<Vector<D>>& homes, const std::vector<double>& radii,
              const std::vector<double>& freedoms, const Vector<D>& edges);
 
@@ -38,13 +38,13 @@ class Shells {
   const Vector<D>& home(Id i) const { return shells_[i].home; }
   double freedom(Id i) const { return shells_[i].freedom; }
 
-  /// Ask the memory for the shell of sphere i, and then for its list.
+  /// Prefetch the shell of sphere i, then its list.
   void prefetch(Id i) const { bernal::prefetch(&shells_[i]); }
   void prefetch_list(Id i) const { lists_.prefetch(shells_[i].list); }
-  /// Ask it for what `settle` will look at.
+  /// Prefetches what `settle` reads.
   void prefetch_settling(Id i, const Vector<D>& home) const { grid_.prefetch_near(home, shells_[i].reach); }
 
-  /// A new home, in [0, edge).
+  /// Sets a new home, in [0, edge).
   void settle(Id i, const Vector<D>& home);
 
   void archive(Archive& a) { a(shells_, lists_, grid_); }
@@ -53,7 +53,7 @@ class Shells {
   struct alignas(D == 3 ? 64 : 16) Shell {
     using ArchivedAsBytes = void;
     Vector<D> home;
-    double freedom, reach;  // reach: radius and freedom
+    double freedom, reach;  // reach: radius plus freedom
     NeighborPool::List list;
   };
 
@@ -61,7 +61,7 @@ class Shells {
   LargePageVector<Shell> shells_;
   NeighborPool lists_;
   HomeGrid<D> grid_;
-  std::vector<Id> before_, after_;  // neighbours of the one that settles, sorted
+  std::vector<Id> before_, after_;  // neighbours of the sphere that settles, sorted
 };
 
 }  // namespace bernal

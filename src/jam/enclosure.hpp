@@ -18,41 +18,41 @@ struct PlaneWall {
   Vector<D> point, inward;
 };
 
-/// One triangle of a wall, which stands so far inside of it.
+/// A triangle of a wall that is displaced inwards by `inset`.
 struct TriangleWall {
   Vector<3> a, b, c;
   PreparedTriangle prepared;
   double inset;
 };
 
-/// One smooth piece of the walls; in other than three dimensions all of them are planes.
+/// A smooth piece of the walls; in other than three dimensions all are planes.
 template <int D>
 using WallPiece = std::variant<PlaneWall<D>, Facet, TriangleWall>;
 
-/// A piece of wall as a point sees it.
+/// A piece of wall relative to a point.
 template <int D>
 struct WallView {
   Vector<D> normal;  // from the wall
-  double distance;   // signed, but of a triangle
+  double distance;   // signed, except for a triangle
 };
 
-/// The walls around soft spheres that are to jam: those of a container, or of a box that ends at walls along
-/// some of its axes.
+/// The walls around soft spheres that are to jam: those of a container, or of a box with walls along some of
+/// its axes.
 ///
-/// Every triangle of a mesh is a piece of its own, and its distance the true one, whose slope is continuous:
-/// so is that of a sum over pieces, wherever a sphere rolls from one to the next. Two triangles whose nearest
-/// point is one and the same, on an edge or corner, are two pieces of one contact.
+/// Every triangle of a mesh is a piece of its own with its true distance, whose slope is continuous; so is
+/// that of a sum over pieces when a sphere rolls from one to the next. Two triangles with the same nearest
+/// point, on an edge or corner, are two pieces of one contact.
 template <int D>
 class Enclosure {
  public:
-  /// Of a box [0, edges) that ends at walls along some axes.
+  /// For a box [0, edges) with walls along some axes.
   Enclosure(const Vector<D>& edges, const std::vector<bool>& walls);
   explicit Enclosure(const Container& container) requires(D == 3);
 
-  /// Appends what is nearer than `reach` to p, nearest first, if not a few that are farther.
+  /// Appends the pieces nearer than `reach` to p, nearest first, possibly with some that are farther.
   void pieces_near(const Vector<D>& p, double reach, std::vector<WallPiece<D>>& out) const;
 
-  /// Nearest points that are no farther apart are one.
+  /// Nearest points no farther apart than this are the same.
   double same_place() const { return same_place_; }
 
  private:
@@ -65,9 +65,9 @@ class Enclosure {
 template <int D>
 WallView<D> view_of(const WallPiece<D>& piece, const Vector<D>& p);
 
-/// The second derivative of the distance, times the distance: zero at a plane, the projection on what is
-/// across the normal at a corner, negative along the curve of a round wall. On the border of a triangle's
-/// face and its edges, where it jumps, either.
+/// The second derivative of the distance, times the distance: zero at a plane, the projection normal to the
+/// normal at a corner, negative along the curve of a round wall. At its discontinuities, on the border
+/// between a triangle's face and its edges, either value.
 template <int D>
 Eigen::Matrix<double, D, D> bend_of(const WallPiece<D>& piece, const Vector<D>& p, const WallView<D>& view);
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "bernal/domain/boundary.hpp"
+#include "bernal/core/boundary.hpp"
 #include "core/every_dimension.hpp"
 
 namespace bernal {

@@ -17,27 +17,27 @@
 namespace bernal {
 
 /// Soft spheres in a periodic box, or between walls, under pressure: a function of all centres and of the
-/// size of the box, walls included, whose minimum, as the pressure goes to zero, is a jammed packing of hard
-/// spheres.
+/// size of the box, walls included, whose minimum tends to a jammed packing of hard spheres as the pressure
+/// goes to zero.
 ///
-/// Spheres whose centres are d apart and whose radii add up to s overlap by o = s - d. They repel each other
-/// with the force f = k x, where x >= max(0, o) is the smoothed overlap
+/// Spheres with centres d apart and radii that sum to s overlap by o = s - d. They repel each other with the
+/// force f = k x, where x >= max(0, o) is the smoothed overlap
 ///   x (x - o) = (t s)²,   that is   x = (o + sqrt(o² + 4 t² s²)) / 2:
-/// a spring where they overlap by more than t s, a hard wall's force (proportional to 1 / gap) where they do
-/// not touch; cut off where the gap is 30 t s (or s/10). With smoothing t = 0 it is the plain spring x =
-/// max(0, o). The stiffness is k = s^(D - 2), as of a material with one modulus for small and large spheres:
-/// in equilibrium all overlap ratios o / s are of one order, however much the sizes differ.
+/// a spring if they overlap by more than t s, a hard wall's force (proportional to 1 / gap) if they do not
+/// touch; cut off at a gap of 30 t s (or s/10). With smoothing t = 0 it is the plain spring x = max(0, o).
+/// The stiffness is k = s^(D - 2), as for a material with one modulus for small and large spheres: in
+/// equilibrium all overlap ratios o / s are of one order, however much the sizes differ.
 ///
-/// The box may dilate by a factor 1 + e, all centres with it, against the load p = D · pressure · volume:
+/// The box may dilate by a factor 1 + e, with all centres, against the load p = D · pressure · volume:
 ///   H(u, e) = sum over pairs of the work of f + p ln(1 + e),   r -> (1 + e)(r + u).
 /// In equilibrium p is the sum of f d over all contacts. A motion v has D N + 1 components, u of each sphere
 /// and then e. The second variation of H is the sum over contacts of
 ///   f'(o) (n·w + e d)² - (f / d) |w - n (n·w)|²,   w = ui - uj,
-/// less p e² and less a term that vanishes in equilibrium.
+/// minus p e² and minus a term that vanishes in equilibrium.
 ///
 /// A wall is a mirror: the contact with it is half of that with the sphere's image, s = r and o = r - d for
-/// the distance d of the centre, k = 2 (2 r)^(D - 2). Walls dilate with the box, w = ui, and in place of |w -
-/// n (n·w)|² stands w·Bw, B being d times the second derivative of d (`bend_of`).
+/// the distance d of the centre, k = 2 (2 r)^(D - 2). Walls dilate with the box, w = ui, and |w - n (n·w)|²
+/// is replaced by w·Bw, with B d times the second derivative of d (`bend_of`).
 ///
 /// Sources: O'Hern, Silbert, Liu & Nagel, Phys. Rev. E 68, 011306 (2003), the potential and the way to
 /// jamming; Dagois-Bohy, Tighe, Simon, Henkes & van Hecke, Phys. Rev. Lett. 109, 095703 (2012), the box as an
@@ -56,27 +56,28 @@ class JammingEnergy final : public SmoothFunction {
   };
   static constexpr std::uint32_t wall = 0xffffffff;
 
-  /// Precondition: at least one sphere. Centres may be anywhere; between walls in these, and `edges` so large
-  /// along such axes that no sphere meets an image.
+  /// Precondition: at least one sphere. Centres may be anywhere; with walls inside these, and `edges` so
+  /// large along such axes that no sphere meets an image.
   JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges,
                 std::shared_ptr<const Enclosure<D>> enclosure = nullptr);
 
-  /// The load is set so that spheres held by 2 D contacts each have the mean overlap ratio `overlap`,
-  /// roughly; the smoothing is a ratio too. Evaluates.
+  /// Sets the load so that spheres with 2 D contacts each have roughly the mean overlap ratio `overlap`; the
+  /// smoothing is a ratio too. Evaluates.
   void set_level(double overlap, double smoothing);
 
-  /// In the metric of the preconditioner: of a motion of all spheres by `ratio` of their diameters.
+  /// The length, in the metric of the preconditioner, of a motion of all spheres by `ratio` of their
+  /// diameters.
   double length_of(double ratio) const { return ratio * std::sqrt(load_per_overlap_); }
 
-  /// From now on only the present overlaps of spheres i with bears[i] count, as springs that pull as well as
-  /// push: the equations of equilibrium become smooth. Until `release`. Precondition: smoothing 0.
+  /// Until `release`, only the present overlaps of spheres i with bears[i] count, as springs that pull as
+  /// well as push, so that the equations of equilibrium are smooth. Precondition: smoothing 0.
   void hold(const std::vector<char>& bears);
-  /// Of the held ones.
+  /// Drops a held contact.
   void let_go(std::size_t contact);
-  /// From now on spheres i with fixed[i], and the box, stay where they are and do not meet each other. Until
-  /// `release`. To be followed by set_level.
+  /// Until `release`, spheres i with fixed[i], and the box, do not move, and fixed spheres do not meet each
+  /// other. Call set_level afterwards.
   void fix(std::vector<char> fixed) { fixed_ = std::move(fixed); }
-  /// Contacts come and go again, and all spheres move. To be followed by set_level.
+  /// Contacts may form and break again, and all spheres move. Call set_level afterwards.
   void release() {
     held_ = false;
     fixed_.clear();
@@ -86,37 +87,38 @@ class JammingEnergy final : public SmoothFunction {
   double radius(std::size_t i) const { return radius_[i]; }
   Eigen::Index unknowns() const override { return static_cast<Eigen::Index>(D * size() + 1); }
   const Vector<D>& edges() const { return state_.edges; }
-  /// Of the box and its walls, in what they were at first.
+  /// Size of the box and its walls relative to the initial one.
   double scale() const { return state_.scale; }
   /// Those of pairs come first.
   const std::vector<Contact>& contacts() const { return now_.contacts; }
   const Eigen::VectorXd& gradient() const override { return now_.gradient; }
-  /// Of all springs, less what smoothing adds: a measure for changes of H. Above 0 where anything touches.
+  /// Energy of all springs without the part of smoothing: a scale for changes of H. Positive if anything
+  /// touches.
   double elastic_energy() const { return now_.elastic; }
   /// The largest o / s; 0 if nothing overlaps.
   double largest_overlap() const { return now_.largest_overlap; }
 
   /// out = Hessian · v.
   void hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override;
-  /// Block Jacobi of the present state, a D x D block for each sphere: positive definite. It also is the
-  /// metric of lengths of motions: none is free, not even that of a sphere that touches nothing.
+  /// Computes a block Jacobi preconditioner for the present state, a D x D block for each sphere: positive
+  /// definite. It is also the metric of lengths of motions: every motion has a positive length, even that of
+  /// a sphere without contacts.
   void factor_preconditioner() override;
   void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override;
 
-  /// Moves all and dilates the box. Returns the change of H; infinite where that shrinks to less than half,
-  /// and between walls where a sphere moves so far that it might get through one.
+  /// Moves all and dilates the box. Returns the change of H; infinite if the box shrinks to less than half,
+  /// or with walls if a sphere moves so far that it might get through one.
   double move(const Eigen::VectorXd& motion) override;
-  /// Takes the last move back. Precondition: there was one since the last set_level, and it has not been
-  /// taken back.
+  /// Undoes the last move. Precondition: there was one since the last set_level that was not undone.
   void take_back() override;
 
   /// Sets the centres, wrapped into the box.
   void write(Spheres<D>& spheres) const;
-  /// Sets the centres as they are, in a box of its size at first: of scale 1.
+  /// Sets the centres unwrapped, relative to the box's initial size (scale 1).
   void write_to_scale(Spheres<D>& spheres) const;
 
-  /// All of its state but the last move and the preconditioner, in one that was made of as many spheres
-  /// between the same walls.
+  /// Its state except for the last move and the preconditioner, for an object made with the same number of
+  /// spheres and the same walls.
   void archive(Archive& a) {
     a(order_, radius_, load_per_overlap_, load_, smoothing_, state_, now_, pairs_, at_finding_,
       width_at_finding_, held_, fixed_);
@@ -137,7 +139,7 @@ class JammingEnergy final : public SmoothFunction {
   using Block = Eigen::Matrix<double, D, D>;
   struct Evaluation {
     std::vector<Contact> contacts;
-    std::vector<Block> bends;  // of those with walls
+    std::vector<Block> bends;  // of contacts with walls
     Eigen::VectorXd gradient;
     double energy = 0, elastic = 0, largest_overlap = 0;
     void archive(Archive& a) { a(contacts, bends, gradient, energy, elastic, largest_overlap); }
@@ -162,7 +164,7 @@ class JammingEnergy final : public SmoothFunction {
   double width() const;
 
   Made made_{"polish"};
-  std::vector<std::uint32_t> order_;  // place of a sphere here -> its number outside
+  std::vector<std::uint32_t> order_;  // index of a sphere here -> its number outside
   std::vector<double> radius_;
   double least_radius_ = 0, largest_radius_ = 0;
   double load_per_overlap_ = 0;
@@ -173,7 +175,7 @@ class JammingEnergy final : public SmoothFunction {
 
   PeriodicPairs<D> pairs_;
   std::shared_ptr<const Enclosure<D>> enclosure_;
-  std::shared_ptr<const NearWalls<D>> near_walls_;  // null where there are no walls
+  std::shared_ptr<const NearWalls<D>> near_walls_;  // null without walls
   State at_finding_;
   double width_at_finding_ = 0;
   bool held_ = false;

@@ -9,40 +9,38 @@
 
 namespace bernal {
 
-/// Takes spheres that overlap a little, or are a little apart, to a jammed, isostatic packing: afterwards the
-/// largest overlap ratio of a pair is at most `tolerance`, and every contact that bears force is closed to
-/// about that. Radii do not change; centres come back in [0, edge), edges in proportion.
+/// Turns spheres with small overlaps or gaps into a jammed, isostatic packing: afterwards the largest overlap
+/// ratio of a pair is at most `tolerance`, and every contact that bears force is closed to about that. Radii
+/// do not change; centres are returned in [0, edge), edges in proportion.
 ///
 /// The spheres become soft under a pressure (JammingEnergy) that falls by factors of ten; at each level the
-/// enthalpy is minimised (TrustRegion), the box being one of its unknowns, so that it does not matter on
-/// which side of jamming the spheres start. Near jamming overlaps are proportional to the pressure. The
-/// potential is smoothed in the same proportion until the contacts are told from the near misses, when the
-/// mean overlap is below 1 / (10 N²), and then no longer; with the contacts settled, one more step takes the
+/// enthalpy is minimised (TrustRegion) with the box as one of its unknowns, so the spheres may start on
+/// either side of jamming. Near jamming overlaps are proportional to the pressure. The potential is smoothed
+/// in the same proportion until contacts can be distinguished from near misses, when the mean overlap is
+/// below 1 / (10 N²), and not smoothed after that; with the contacts fixed, one more step reduces the
 /// overlaps to `tolerance`.
 ///
-/// Up to 3,000 spheres equilibrium is reached to 1e-6 of the forces and the number of contacts is the
-/// isostatic one, mostly exactly; beyond, where that would take long, to 1e-3, and some of the contacts, the
-/// weakest, are still open: 2.3 % of those of 3,000 spheres that were solved no closer.
+/// Up to 3,000 spheres equilibrium is reached to 1e-6 of the forces and the number of contacts is isostatic,
+/// usually exactly; for more spheres, which would take long, to 1e-3, and some of the weakest contacts are
+/// still open: 2.3 % for 3,000 spheres solved to that accuracy.
 ///
-/// Where rounding of the coordinates allows no better, `tolerance` is not reached: 1e-15 edges over the
-/// smallest radius. Precondition: overlaps and gaps of neighbours are below about 1e-2; no two centres
-/// coincide. Returns hit_limit if `tolerance` was not reached, equilibrium not to 1e-2, or fewer contacts
-/// bear force than hold the spheres. Cost: the Newton steps are many and short rather than hard to solve, as
-/// contacts change along the way: seconds for 1,000 spheres, more than half a minute for 3,000, more than a
-/// minute for 10,000. Cancelled, it ends within a step. Memory about 1 kB a sphere. One thread; the same bits
-/// each time.
+/// Rounding of the coordinates limits `tolerance` to 1e-15 edges over the smallest radius. Precondition:
+/// overlaps and gaps of neighbours are below about 1e-2; no two centres coincide. Returns hit_limit if
+/// `tolerance` was not reached, equilibrium not to 1e-2, or fewer contacts bear force than hold the spheres.
+/// Cost: many Newton steps that are cheap to solve, because contacts change along the way: seconds for 1,000
+/// spheres, more than half a minute for 3,000, more than a minute for 10,000. When cancelled, it ends within
+/// a step. Memory about 1 kB a sphere. One thread; the same bits each time.
 ///
-/// Along axes on which the box ends at walls, by `work.walls`, these are contacts like any other, and dilate
-/// with the box. In equilibrium the forces of C contacts balance D (N - rattlers) times, of which as many
-/// hold anyway as there are motions of all spheres together that no wall feels: D shifts in a periodic box,
-/// one for each axis without walls between walls. What bears a pressure has one solution of these equations
-/// but no second, so
+/// Along axes on which the box has walls, by `work.walls`, wall contacts count like any other, and dilate
+/// with the box. In equilibrium the forces of C contacts satisfy D (N - rattlers) balance equations, less one
+/// for each common motion of all spheres that no wall prevents (D shifts in a periodic box, one for each axis
+/// without walls otherwise). Under pressure there is exactly one solution, so
 ///   C = D (N - rattlers) - symmetries + 1:
-/// the isostatic number, of frictionless spheres that nothing but the pressure presses together.
+/// the isostatic number, for frictionless spheres under nothing but the pressure.
 template <int D>
 StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
 
-/// The key of a stage that ends with it.
+/// The key of a stage that ends with polishing.
 template <class Options>
 schema::Key polish_key() {
   return schema::buys_accuracy(
@@ -54,57 +52,57 @@ schema::Key polish_key() {
                      {0, 0.5}));
 }
 
-/// Appends what it is expected to cost, which in a box the last of the items holds, too.
+/// Appends its expected cost, which in a box is also added to the last of the items.
 void add_polishing(std::vector<PlanItem>& items, const Outlook& outlook);
 
-/// Spheres that were polished in a container.
+/// The result of polishing in a container.
 struct Jammed {
-  /// More than that is not polishing: such spheres are too few to hold each other.
+  /// More growth than this is not polishing: such spheres are too few to hold each other.
   static constexpr double most_growth = 1.03;
   StageEnd end;
-  Spheres<3> spheres;  ///< in the container as it is; with their radii as they were
-  double growth;     ///< by which all radii have to be multiplied so that contacts close and nothing overlaps
-  bool too_loose;    ///< it gave up because that would be more than `most_growth`
-  std::size_t held;  ///< spheres that are no rattlers
+  Spheres<3> spheres;  ///< in the unchanged container, with their original radii
+  double growth;       ///< factor for all radii with which contacts close and nothing overlaps
+  bool too_loose;      ///< stopped because the factor would exceed `most_growth`
+  std::size_t held;    ///< spheres that are not rattlers
   double held_volume;  ///< their share of the volume of all
 };
 
-/// The same in a container, which stays as it is: neither can it dilate nor are there fewer or more spheres,
-/// so it is all radii that grow by one factor until they jam. It is the same problem: seen in units of the
-/// radii, it is the container that shrinks. `symmetries` is `symmetries_of` its domain. Precondition: there
-/// are spheres, with centres inside. Cost: mostly products with the Hessian, 10 ns a contact each, tens to
-/// hundreds a Newton step, and a thousand steps or two: 6 to 14 s for 1,000 spheres.
+/// The same in a container, which does not change: it cannot dilate and the number of spheres is fixed, so
+/// all radii grow by one factor until the spheres jam. In units of the radii it is the container that
+/// shrinks, so the problem is the same. `symmetries` is `symmetries_of` its domain. Precondition: there are
+/// spheres, with centres inside. Cost: mostly products with the Hessian, 10 ns a contact each, tens to
+/// hundreds a Newton step, and one or two thousand steps: 6 to 14 s for 1,000 spheres.
 Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
                            double tolerance, const Monitor& monitor,
                            const std::function<void(double done, double largest_overlap)>& report,
                            Checkpoints* checkpoints = nullptr);
 
-/// The end of every stage that packs a bed: polishes contacts until their gap ratios are below `polish`, if
-/// that is above 0, or to the skin of the bed where that is wider. All sizes grow by one factor, which
-/// `work.size_scale` holds, for the stages to come too. Returns `end`, or why polishing ended; what is too
-/// loose to be polished stays as it is, and `work.missed` says so. So it does where a few spheres, wedged in
-/// between walls, keep the sizes from growing until the others hold each other too: the rest is loose.
-/// What is said to be closed is counted by the spheres as they lie (`what_is_open`).
+/// The end of every stage that packs a bed: polishes contacts to gap ratios below `polish`, if that is above
+/// 0, or to the skin of the bed if that is wider. All sizes grow by one factor, stored in `work.size_scale`
+/// for later stages. Returns `end`, or the reason why polishing ended. A bed too loose to be polished does
+/// not change, and `work.missed` says so; this includes a bed in which a few spheres, wedged between walls,
+/// stop the growth while the rest is loose. Closed contacts are counted on the final positions
+/// (`what_is_open`).
 StageEnd finish_in_bed(StageEnd end, double polish, Work& work);
 
-/// The end of every stage that lets a periodic box follow from the packing: polishes contacts to the overlap
-/// ratio `polish`, if that is above 0; grows or shrinks the box until nothing overlaps more than is allowed;
-/// moves the spheres apart in proportion where the scene asks for a larger box; and hands all of it to
-/// `work`. Returns `end`, or why polishing ended, and `work.missed` says what is open: by the spheres
-/// as they lie (`what_is_open`), or because the larger box opened it again. Cost: a look at all near pairs,
-/// and `polish`.
+/// The end of every stage with a box that follows from the packing: polishes contacts to the overlap ratio
+/// `polish`, if that is above 0; scales the box until nothing overlaps more than allowed; moves the spheres
+/// apart in proportion if the scene asks for a larger box; and stores all in `work`. Returns `end`, or the
+/// reason why polishing ended; `work.missed` says what is open, by the final positions (`what_is_open`) or
+/// because of the larger box. Cost: a search of all near pairs, and `polish`.
 template <int D>
 StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish, Work& work);
 
-/// The end of a stage that polished to `polish` and came to `end`, where `open` says what was found open:
-/// what holds no spheres is not converged, whatever the solver says. `work.missed` tells.
+/// The end of a stage that polished to `polish` with the result `end`; `open` states which contacts are open.
+/// Contacts that do not hold the spheres mean not converged, whatever the solver returned; `work.missed` says
+/// so.
 StageEnd end_of_polish(StageEnd end, double polish, const std::optional<std::string>& open, Work& work);
 
-/// The end of a stage whose spheres stand in a box that is larger than they need: contacts were to be closed
-/// and are open, which `work.missed` says, where `polish` is above 0.
+/// The end of a stage whose box is larger than the spheres need: if `polish` is above 0, contacts that should
+/// be closed are open, and `work.missed` says so.
 StageEnd end_in_larger_box(StageEnd end, double polish, Work& work);
 
-/// Whether the target edges have room for a box of these edges, and for the rounding of moving to them.
+/// Whether a box of these edges fits the target edges, including the rounding of moving to them.
 template <int D>
 bool lies_within(const Spheres<D>& spheres, const Vector<D>& edges, const Vector<D>& target);
 

@@ -8,8 +8,8 @@
 
 namespace bernal {
 
-/// A function of many variables, at the place where it stands, as a TrustRegion sees it. Its Hessian may be
-/// indefinite and jump.
+/// A function of many variables at its current point, for a TrustRegion. Its Hessian may be indefinite and
+/// discontinuous.
 class SmoothFunction {
  public:
   virtual ~SmoothFunction() = default;
@@ -17,13 +17,13 @@ class SmoothFunction {
   virtual const Eigen::VectorXd& gradient() const = 0;
   /// out = Hessian · v.
   virtual void hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const = 0;
-  /// Of the present place; positive definite.
+  /// For the current point; positive definite.
   virtual void factor_preconditioner() = 0;
-  /// out = M⁻¹ v, M being the preconditioner.
+  /// out = M⁻¹ v, with the preconditioner M.
   virtual void precondition(const Eigen::VectorXd& v, Eigen::VectorXd& out) const = 0;
-  /// Moves by v. Returns by how much the function changed; infinite where it must not go.
+  /// Moves by v. Returns the change of the function; infinite if the move is not allowed.
   virtual double move(const Eigen::VectorXd& v) = 0;
-  /// Takes the last move back.
+  /// Undoes the last move.
   virtual void take_back() = 0;
 };
 
@@ -31,9 +31,9 @@ class SmoothFunction {
 /// M; a gradient's is sqrt(g·M⁻¹g).
 ///
 /// A step minimises g·v + v·Hv/2 by conjugate gradients until they meet the border of the region or negative
-/// curvature. What the iteration had at a quarter and a sixteenth of the region's radius is kept, so that a
-/// step that turns out too long costs no new iteration. Source: Steihaug, SIAM J. Numer. Anal. 20, 626
-/// (1983); Conn, Gould & Toint, Trust-Region Methods (2000), 7.5.
+/// curvature. The iterates at a quarter and a sixteenth of the region's radius are kept, so that a step that
+/// turns out too long costs no new iteration. Source: Steihaug, SIAM J. Numer. Anal. 20, 626 (1983); Conn,
+/// Gould & Toint, Trust-Region Methods (2000), 7.5.
 class TrustRegion {
  public:
   /// The equations of a step are solved to `forcing`, relative to the gradient.
@@ -42,12 +42,12 @@ class TrustRegion {
   /// Length of the gradient.
   double gradient_length();
 
-  /// One step. Call gradient_length() before each. A change of the function below `resolution` may be
-  /// lost in its rounding: it is taken from the slopes at both ends. Returns whether something moved; else
-  /// the region has become smaller, or the monitor said stop meanwhile and all is as before the step.
+  /// One step. Call gradient_length() before each. A change of the function below `resolution`, which
+  /// rounding may hide, is computed from the slopes at both ends. Returns whether the point moved; otherwise
+  /// the region has shrunk, or the monitor stopped and nothing changed.
   bool step(double resolution);
 
-  /// Whether the monitor said stop within a step.
+  /// Whether the monitor stopped within a step.
   bool stopped() const { return stopped_; }
   std::uint64_t products() const { return products_; }
   double radius() const { return radius_; }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal::drawing {
 namespace {

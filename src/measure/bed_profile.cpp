@@ -17,14 +17,14 @@ namespace bernal {
 namespace {
 
 constexpr double width_of_cells = 0.5;  // in mean diameters
-constexpr double least_empty = 0.02;    // of a container that is not full
+constexpr double least_empty = 0.02;    // of a container that counts as not full
 constexpr double most_hanging = 0.5;
-constexpr double low_share = 0.05;  // of the surface, that is below the level
+constexpr double low_share = 0.05;  // of the surface, below the level
 constexpr double rounding_of_layers = 1e-6;
 constexpr std::size_t points_of_surface = 1 << 15;
 
 /// The spheres in the container's frame, with heights against gravity.
-struct Scenery {
+struct BedInFrame {
   const Spheres<3>& spheres;
   const Container& container;
   const VolumeBelow& below;
@@ -54,7 +54,7 @@ struct MeanSurface {
   double value, deviation, share;
 };
 
-/// Of the cells that are not bare; the share is theirs of all.
+/// Over the cells that are not bare; `share` is their share of all.
 MeanSurface mean_surface(const std::vector<BedSurface::Cell>& cells) {
   double all = 0, covered = 0, sum = 0, squares = 0;
   for (const auto& [height, share] : cells) {
@@ -85,9 +85,8 @@ struct Volume {
   double value, error;
 };
 
-/// Of the container below the surface: below its mean height, and by points in the container what the
-/// surface has more or less than that.
-Volume below_surface(const Scenery& all, const BedSurface& surface, double mean) {
+/// The container's volume below the surface: exact below its mean height, and sampled for the difference.
+Volume below_surface(const BedInFrame& all, const BedSurface& surface, double mean) {
   const double highest = all.highest();
   const Bounds<3> bounds = LowerPart{all.down, highest}.cut(all.container.bounds());
   const std::vector<Vector<3>> points = points_inside(
@@ -107,7 +106,7 @@ Volume below_surface(const Scenery& all, const BedSurface& surface, double mean)
 }
 
 /// The volume of the spheres in each of equal layers from `from` on.
-std::vector<double> slices(const Scenery& all, double from, double thickness, std::size_t layers) {
+std::vector<double> slices(const BedInFrame& all, double from, double thickness, std::size_t layers) {
   std::vector<double> filled(layers, 0);
   for (std::size_t i = 0; i < all.spheres.size(); ++i) {
     const double r = all.spheres.r[i], z = all.height(i) - from;
@@ -126,7 +125,7 @@ std::vector<double> slices(const Scenery& all, double from, double thickness, st
   return filled;
 }
 
-std::vector<BedProfile::Layer> layers_of(const Scenery& all, const BedOptions& options) {
+std::vector<BedProfile::Layer> layers_of(const BedInFrame& all, const BedOptions& options) {
   const double lowest = all.below.lowest(), deep = all.highest() - lowest;
   const double wanted = std::ceil(deep / (options.layer * all.diameter) - rounding_of_layers);
   const auto n = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(options.most_layers)));
@@ -144,7 +143,7 @@ std::vector<BedProfile::Layer> layers_of(const Scenery& all, const BedOptions& o
   return layers;
 }
 
-std::optional<BedProfile::Core> core_of(const Scenery& all, double level) {
+std::optional<BedProfile::Core> core_of(const BedInFrame& all, double level) {
   const double margin = BedProfile::core_depth * all.diameter;
   const double from = all.below.lowest() + margin, to = level - margin;
   if (to - from < all.diameter) return {};
@@ -166,7 +165,7 @@ void scale(BedProfile& profile, double unit) {
   }
 }
 
-/// Whether there is a direction along which spheres could stand.
+/// Whether the spheres can lie on a floor in this direction.
 bool has_floor(const Domain& domain, const Vector<3>& down) {
   const int dimension = dimension_of(domain);
   return has_walls(domain) && (dimension == 2 || dimension == 3) &&
@@ -193,7 +192,7 @@ std::optional<BedProfile> bed_profile(const Spheres<dynamic>& packed, const Doma
   const VolumeBelow below(to_local(domain, frame), down);
   const double diameter =
       2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / static_cast<double>(spheres.size());
-  const Scenery all{spheres, *container, below, down, diameter};
+  const BedInFrame all{spheres, *container, below, down, diameter};
   const bool full = all.is_full();
   if (full && !options.is_bed) return {};
 

@@ -11,13 +11,13 @@ namespace {
 constexpr double most_cells = 1 << 22;
 constexpr double points_for_shares = 1 << 16;
 constexpr double most_points_across = 8;  // of a cell
-/// A cell that a sphere reaches by so little, of its squared radius, is beside it.
+/// A sphere that reaches into a cell by less than this share of its squared radius is beside it.
 constexpr double beside_cell = 1e-9;
-/// A point of the surface is looked at by so much of its height nearer to the floor, so that rounding does
+/// A point of the surface is tested nearer to the floor by this share of its height, so that rounding does
 /// not put it outside.
 constexpr double lowered = 1e-6;
 
-/// Across gravity and each other; the first along an axis that repeats itself, or else any axis across
+/// Directions normal to gravity and to each other; the first along a periodic axis, or any axis normal to
 /// gravity.
 std::array<Vector<3>, 2> across(const Vector<3>& down, const Container& container) {
   Vector<3> first = container.dimension() == 2 ? Vector<3>(down.cross(Vector<3>::UnitZ())).normalized()
@@ -57,7 +57,7 @@ std::size_t BedSurface::Axis::cell_of(double x) const {
   return static_cast<std::size_t>(repeats ? cell - n * std::floor(cell / n) : std::clamp(cell, 0.0, n - 1));
 }
 
-/// Over all cells that a sphere reaches.
+/// Raises the surface of all cells that a sphere reaches.
 void BedSurface::raise(const Vector<3>& center, double r) {
   std::array<double, 2> at;
   std::array<std::ptrdiff_t, 2> first, last;

@@ -9,21 +9,21 @@
 
 namespace bernal {
 
-/// The surface of a bed over the cells of a grid across gravity: see `BedProfile`. Heights are coordinates
-/// along -down.
+/// The surface of a bed as heights over a grid of cells normal to gravity, see `BedProfile`. Heights are
+/// coordinates along -down.
 class BedSurface {
  public:
   static constexpr double bare = -std::numeric_limits<double>::infinity();
 
-  /// Cells are about so wide, and tile an axis that repeats itself; wider where they would be more than
-  /// four million.
+  /// Cells have about this width, and tile periodic axes; they are wider if there would be more than four
+  /// million.
   BedSurface(const Spheres<3>&, const Container&, const Vector<3>& down, double width);
 
-  /// Over the cell of a point; `bare` where no sphere stands over it.
+  /// The height of the cell of a point; `bare` if no sphere is over it.
   double height_over(const Vector<3>& p) const;
 
-  /// What a cell has: its height, and how much of it is in the container at that height; of a bare one at
-  /// the mean height of the others. Cost: 65,536 questions to the walls, or one a cell.
+  /// A cell's height, and the share of the cell inside the container at that height (for a bare cell, at the
+  /// mean height of the others). Cost: 65,536 wall queries, or one a cell if there are more.
   struct Cell {
     double height, share;
   };

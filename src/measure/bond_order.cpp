@@ -12,12 +12,12 @@
 namespace bernal {
 namespace {
 
-/// Harmonics in single precision, of sums over some ten bonds good to 1e-6: half of the memory.
+/// Harmonics in single precision, to save memory: sums over about ten bonds are accurate to 1e-6.
 using Order = Eigen::Matrix<float, 13, 1>;
 
-/// Bonds in groups of their parts, so that what each bond adds to the spheres at both of its ends is summed
-/// in threads, in an order that does not depend on them. A group has the spheres from which its bonds were
-/// found, and adds to these alone; what bonds add to spheres of other groups these add after it.
+/// Bonds in groups of parts, for sums over the bonds of each sphere that are computed in threads but in a
+/// fixed order. A group owns the spheres from which its bonds were found, and adds to these alone; bonds that
+/// end in spheres of other groups are added by those groups afterwards.
 class GroupedBonds {
  public:
   GroupedBonds(std::size_t spheres, std::vector<std::vector<NearDirection>> parts)
@@ -37,7 +37,7 @@ class GroupedBonds {
     });
   }
 
-  /// Calls add(sphere, of(bond)) for both ends of each.
+  /// Calls add(sphere, of(bond)) for both ends of each bond.
   template <class Of, class Add>
   void add_to_both(const Of& of, const Add& add) const {
     parallel_for(groups_, [&](std::size_t g) {
@@ -65,10 +65,10 @@ class GroupedBonds {
   std::vector<std::vector<NearDirection>> parts_;
   std::size_t groups_;
   std::vector<std::uint8_t> group_of_;                     // of spheres
-  std::vector<std::vector<const NearDirection*>> strays_;  // to each group from each
+  std::vector<std::vector<const NearDirection*>> strays_;  // by target and source group
 };
 
-/// Of every sphere the sum over its bonds, zero without bonds, and how many these are.
+/// For every sphere the sum over its bonds, zero without bonds, and their number.
 struct Sums {
   std::vector<Order> orders;
   std::vector<std::uint32_t> bonds;
@@ -76,7 +76,7 @@ struct Sums {
   Sums(std::size_t spheres, const GroupedBonds& all) : orders(spheres, Order::Zero()), bonds(spheres, 0) {
     all.add_to_both(
         [](const NearDirection& bond) -> Order {
-          if (bond.direction.isZero(0)) return Order::Zero();  // centres that coincide show no direction
+          if (bond.direction.isZero(0)) return Order::Zero();  // coincident centres have no direction
           return harmonics6(bond.direction.cast<double>()).cast<float>();
         },
         [&](std::uint32_t i, const Order& h) {
@@ -86,7 +86,7 @@ struct Sums {
   }
 };
 
-/// Mean of q6 of the first so many, and its standard error.
+/// Mean of q6 over the first `asked` spheres, and its standard error.
 void write_mean_q6(const Sums& sums, std::size_t asked, BondOrder& out) {
   double n = 0, sum = 0, squares = 0;
   for (std::size_t i = 0; i < asked; ++i) {

@@ -6,6 +6,8 @@
 
 namespace bernal {
 
+static_assert(std::variant_size_v<Domain> == 5, "trim and volume below need the walls of the new container");
+
 CellInContainer::CellInContainer(const Domain& domain, const Container& container)
     : domain_(domain), container_(container) {
   if (is_faceted(domain)) polygons_.emplace(domain, container);

@@ -7,20 +7,20 @@
 
 namespace bernal {
 
-/// How much of a cell lies in a container of two or three dimensions, to rounding: between round walls in
-/// closed form, see `volume_inside`; of a mesh or a polygon a cell that a ball in the container holds is all
-/// inside, and another one is cut along the walls, see `WallPolygons`.
+/// The volume of a cell inside a container of two or three dimensions, to rounding: between round walls in
+/// closed form, see `volume_inside`; in a mesh or polygon a cell inside a ball that lies in the container
+/// counts whole, and any other is cut along the walls, see `WallPolygons`.
 class CellInContainer {
  public:
-  /// The domain is that which the container was made from; both outlive this. Precondition: no box and no
-  /// inset.
+  /// The domain is the one that the container was made from; both must outlive this. Precondition: no box and
+  /// no inset.
   CellInContainer(const Domain&, const Container&);
 
-  /// Cuts off what is outside in any case, where that is at hand, so that the cell is less work.
+  /// Cuts off parts that are certainly outside, if that is cheap, to reduce the work.
   void trim(ConvexCell& cell, const Vector<3>& center) const;
 
-  /// Volume, in two dimensions area. The cell is in coordinates about `center`. Cost: one clearance for a
-  /// cell that is far from walls, some µs for one at a round wall.
+  /// Volume (area in two dimensions). The cell is in coordinates about `center`. Cost: one clearance for a
+  /// cell far from walls, some µs for one at a round wall.
   double volume(const ConvexCell& cell, const Vector<3>& center) const;
 
  private:

@@ -20,11 +20,11 @@ namespace bernal {
 namespace {
 
 constexpr double cells_per_radius = 4;
-constexpr double near_gap = 0.3;        ///< between spheres that a line of places may join
-constexpr std::size_t most_known = 16;  ///< places that are tried for every point
+constexpr double near_gap = 0.3;        ///< between spheres whose centres a chain of places may join
+constexpr std::size_t most_known = 16;  ///< known places tried for every point
 constexpr std::uint32_t none = Chambers::none;
 
-/// The deepest place that a coarse look finds.
+/// The deepest places found on a coarse grid.
 std::vector<Place> deepest_of_coarse_cells(const FreeSpace& space, double size) {
   constexpr double cells = 16;
   const FreeCells coarse(space, size / cells);
@@ -35,7 +35,7 @@ std::vector<Place> deepest_of_coarse_cells(const FreeSpace& space, double size) 
   return deepest;
 }
 
-/// The components of the places in a container; where it is convex there is one, or none.
+/// The components of the places in a container; at most one if it is convex.
 class Components {
  public:
   Components(const Domain& shape, const FreeSpace& space, int cells) {
@@ -56,7 +56,7 @@ class Components {
   double edge() const { return edge_; }
   double step() const { return cells_ ? cells_->step() : 0; }
   double coarse_step() const { return cells_ ? cells_->coarse_step() : 0; }
-  /// A place well inside each.
+  /// A place well inside each component.
   const std::vector<Place>& deepest() const { return deepest_; }
 
   /// See FreeCells::find.
@@ -72,7 +72,7 @@ class Components {
   std::vector<Place> deepest_;
 };
 
-/// A sphere's centre as a place; absent where it is none.
+/// A sphere's centre as a place; absent if it is none.
 std::vector<std::optional<Place>> centers_of(const FreeSpace& space, const Spheres<3>& spheres) {
   std::vector<std::optional<Place>> centers(spheres.size());
   parallel_for(spheres.size(), [&](std::size_t i) {
@@ -83,8 +83,8 @@ std::vector<std::optional<Place>> centers_of(const FreeSpace& space, const Spher
   return centers;
 }
 
-/// Components that spheres show to be one, and places that only a sphere found. The sets of the components,
-/// which come first, and of the spheres.
+/// Merges components that spheres connect, and adds places that only a sphere found. Returns the sets of the
+/// components, then those of the spheres.
 std::vector<std::uint32_t> linked(const Components& components, const FreeSpace& space,
                                   const Spheres<dynamic>& spheres, const Domain& domain,
                                   const std::vector<std::optional<Place>>& centers) {
@@ -117,10 +117,10 @@ std::vector<std::uint32_t> linked(const Components& components, const FreeSpace&
   return sets.numbered();
 }
 
-/// What becomes of points that fill the container evenly.
+/// Counts of points that fill the container evenly.
 struct Sampled {
   std::size_t inside = 0;
-  std::vector<std::size_t> covered;  ///< by the chamber
+  std::vector<std::size_t> covered;  ///< by chamber
   std::size_t uncovered = 0;
 
   double share(std::size_t points) const {
@@ -132,16 +132,16 @@ struct Sampled {
   }
 };
 
-/// `chamber_of(place)` is asked for the place nearest to a point, where a sphere there covers the point.
-/// `known` are places that are tried first: where the spheres are nearly as large as a round part of a mesh,
-/// they cover most of it, and the search for the nearest wall is slow.
+/// `chamber_of(place)` is called for the place nearest to a point, if a sphere there covers the point.
+/// `known` places are tried first: spheres nearly as large as a round part of a mesh cover most of it from
+/// there, and the search for the nearest wall is slow.
 template <class ChamberOf>
 Sampled sample(const FreeSpace& space, std::span<const Place> known, std::size_t chambers,
                std::uint32_t points, ChamberOf&& chamber_of) {
   enum : std::uint32_t { outside = none, uncovered = none - 1, elsewhere = none - 2 };
   const Bounds<3> bounds = space.container().bounds();
   const bool fills = fills_its_bounds(space.container());
-  std::vector<Vector<3>> inside;  // where even points of the bounds would hardly ever be
+  std::vector<Vector<3>> inside;  // if even points in the bounds would hardly ever be inside
   if (!fills) inside = points_inside(space.container(), points, 1, {});
   const double waste = std::max(1.0, bounds.volume() / space.container().volume());
   std::vector<std::uint32_t> kinds(fills ? static_cast<std::size_t>(waste * points) : inside.size());
@@ -170,7 +170,7 @@ Chambers::Uncovered uncovered_of(const Sampled& sampled, double radius) {
   return {radius, sampled.share(sampled.uncovered), sampled.error(sampled.uncovered)};
 }
 
-/// The chambers by falling share, then by falling number of spheres.
+/// Sorts the chambers by decreasing share, then by decreasing number of spheres.
 void sort(Chambers& found) {
   std::vector<std::uint32_t> order(found.chambers.size()), place(found.chambers.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -188,7 +188,7 @@ void sort(Chambers& found) {
     if (chamber != none) chamber = place[chamber];
 }
 
-/// `packed` may be null: then it is only what spheres of that radius would find.
+/// `packed` may be null: then only chambers for spheres of that radius.
 Chambers chambers_in(const Domain& shape, const Spheres<dynamic>* packed, double radius, double mean_radius,
                      const ChamberOptions& options, const std::shared_ptr<const Container>& made) {
   const Frame frame = frame_of(shape);

@@ -12,20 +12,20 @@
 namespace bernal {
 namespace {
 
-/// Ranks take a byte.
+/// Ranks are stored in a byte.
 constexpr std::size_t most_gaps = 256;
-/// Gaps beyond it are between spheres that have others between them.
+/// Larger gap ratios are between spheres with others between them.
 constexpr double widest_of_all = 1;
 
-/// Who is near whom, both ways, in one flat list, with the rank of each pair; and the pairs of spheres and
-/// their own images, which hold nothing.
+/// Neighbours of each sphere, in one flat list, with the rank of each pair; pairs of spheres and their own
+/// images are kept apart.
 class Neighbours {
  public:
   struct Near {
     std::span<const std::uint32_t> ids;
     std::span<const std::uint8_t> ranks;
 
-    /// Calls visit(id) for those of at most this rank.
+    /// Calls visit(id) for neighbours of at most this rank.
     template <class Visit>
     void up_to(std::uint32_t rank, const Visit& visit) const {
       for (std::size_t k = 0; k < ids.size(); ++k)
@@ -33,7 +33,7 @@ class Neighbours {
     }
   };
 
-  /// The parts of the pairs go as they are read.
+  /// The parts are freed as they are read.
   Neighbours(std::size_t spheres, std::vector<std::vector<RankedPair>> parts) : start_(spheres + 1, 0) {
     for (const auto& part : parts)
       for (const RankedPair& pair : part) {
@@ -75,8 +75,8 @@ class Neighbours {
   std::vector<RankedPair> own_;
 };
 
-/// Which spheres are no rattlers, by the pairs up to that rank. `held` starts as the number of walls that
-/// each touches, and ends as the number of all that hold it at first.
+/// Marks the spheres that are not rattlers, by the pairs up to that rank. `held` is the number of walls that
+/// each touches; on return the number of its initial contacts.
 std::vector<bool> backbone_of(int dimension, std::vector<std::uint32_t>& held, const Neighbours& neighbours,
                               std::uint32_t rank) {
   const auto needed = static_cast<std::uint32_t>(dimension + 1);
@@ -109,7 +109,7 @@ Contacts count(std::size_t spheres, const Domain& domain, const Neighbours& neig
   }
   const std::vector<bool> backbone = backbone_of(dimension, held, neighbours, rank);
 
-  std::uint64_t ends = 0, backbone_ends = 0;  // of pairs, each seen from both
+  std::uint64_t ends = 0, backbone_ends = 0;  // ends of pairs, two for each
   for (std::uint32_t i = 0; i < spheres; ++i)
     neighbours.of(i).up_to(rank, [&](std::uint32_t j) {
       ++ends;

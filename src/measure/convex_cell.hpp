@@ -10,33 +10,31 @@ namespace bernal {
 
 /// A convex polyhedron from which half-spaces are cut off, in coordinates about a point of its own.
 ///
-/// Three edges meet in every corner: in a place where more do, as many corners coincide as are needed for
-/// that. Edges lead from corner to corner and around every face, and a cut takes out corners, ends the edges
-/// that led to them in new ones, and joins these around what it has opened. So the surface is closed after
-/// every cut, however rounding has taken the sides of corners, and volumes are exact to rounding, without a
-/// tolerance anywhere.
+/// Three edges meet in every corner; where more do, several corners coincide. Edges connect corners and run
+/// around every face; a cut removes corners, ends the edges to them in new corners, and joins these around
+/// the opening. So the surface is closed after every cut, whatever rounding does to the sides of corners, and
+/// volumes are exact to rounding without any tolerance.
 class ConvexCell {
  public:
-  /// What a face is of: as its owner says. Below 0 it is of no neighbour.
+  /// Identifies the owner of a face, as the caller defines it. Negative labels are not neighbours.
   using Label = std::int32_t;
   static constexpr Label wall = -1;
 
-  /// Begins anew as a box, the label of whose sides across each axis is given. Precondition: lower < upper,
-  /// about zero or not.
+  /// Resets to a box, with one label for the two sides normal to each axis. Precondition: lower < upper.
   void reset(const Vector<3>& lower, const Vector<3>& upper, const std::array<Label, 3>& sides);
 
-  /// Leaves the points p with p·normal <= offset. Corners on the plane stay. False, and nothing is done,
-  /// where no corner has p·normal > offset + slack. Cost: some 2 ns a corner, and 20 one that is cut off.
+  /// Keeps the points p with p·normal <= offset. Corners on the plane stay. Returns false, without change, if
+  /// no corner has p·normal > offset + slack. Cost: about 2 ns a corner, and 20 for each that is cut off.
   bool cut(const Vector<3>& normal, double offset, Label label, double slack = 0);
 
   bool empty() const { return corners_.empty(); }
   std::span<const Vector<3>> corners() const { return corners_; }
-  /// Calls visit(corners) for every loop of every face, anticlockwise as seen from outside.
+  /// Calls visit(corners) for every loop of every face, anticlockwise seen from outside.
   template <class Visit>
   void for_each_loop(Visit&& visit) const;
 
   double volume() const;
-  /// Of the faces that have an area: the cell is where p·normal <= offset.
+  /// The planes of faces with an area: the cell is where p·normal <= offset.
   struct Plane {
     Vector<3> normal;  ///< of length 1, outwards
     double offset;
@@ -44,47 +42,49 @@ class ConvexCell {
   std::vector<Plane> planes() const;
   /// The largest distance of a corner from the origin, squared.
   double squared_reach() const;
-  /// How many faces of neighbours have more than `least` of the surface.
+  /// Number of faces of neighbours with more than the share `least` of the surface.
   std::uint32_t faces(double least) const;
 
  private:
-  /// An edge as it leaves a corner: the number of that, and which of three it is there, anticlockwise as seen
-  /// from outside. Its face is the one to its left.
-  using Way = std::uint32_t;
-  static Way way(std::size_t corner, std::uint32_t k) { return static_cast<Way>(4 * corner + k); }
-  static std::uint32_t corner_of(Way way) { return way / 4; }
-  static Way clockwise(Way way) { return way % 4 > 0 ? way - 1 : way + 2; }
-  Way next_around_face(Way way) const { return clockwise(back_[way]); }
-  std::size_t ways() const { return back_.size(); }
-  static bool is_way(std::size_t way) { return way % 4 != 3; }
+  /// A directed edge: the number of its corner, and its index among the corner's three edges, anticlockwise
+  /// seen from outside. Its face is on its left.
+  using HalfEdge = std::uint32_t;
+  static HalfEdge half_edge(std::size_t corner, std::uint32_t k) {
+    return static_cast<HalfEdge>(4 * corner + k);
+  }
+  static std::uint32_t corner_of(HalfEdge edge) { return edge / 4; }
+  static HalfEdge clockwise(HalfEdge edge) { return edge % 4 > 0 ? edge - 1 : edge + 2; }
+  HalfEdge next_around_face(HalfEdge edge) const { return clockwise(back_[edge]); }
+  std::size_t half_edges() const { return back_.size(); }
+  static bool is_half_edge(std::size_t edge) { return edge % 4 != 3; }
 
   void resize(std::size_t corners);
-  void end_edge(Way inwards, std::uint32_t corner, std::uint32_t cap);
+  void end_edge(HalfEdge inwards, std::uint32_t corner, std::uint32_t cap);
   void move_corner(std::uint32_t from, std::uint32_t to);
   void find_areas() const;
 
   std::vector<Vector<3>> corners_;
-  std::vector<Way> back_;            ///< of every way: the one that leads back
-  std::vector<std::uint32_t> face_;  ///< of every way: of `labels_`
+  std::vector<HalfEdge> back_;       ///< for every half-edge, the opposite half-edge
+  std::vector<std::uint32_t> face_;  ///< for every half-edge, an index into `labels_`
   std::vector<Label> labels_;
 
-  // Of one call, kept for their memory.
+  // Scratch memory of one call.
   std::vector<double> height_;
   std::vector<std::uint32_t> cut_off_;
-  std::vector<Way> crossed_;
+  std::vector<HalfEdge> crossed_;
   mutable std::vector<std::uint32_t> marks_, loop_;
   mutable std::vector<Vector<3>> areas_;
 };
 
 template <class Visit>
 void ConvexCell::for_each_loop(Visit&& visit) const {
-  marks_.assign(ways(), 0);
-  for (Way first = 0; first < ways(); ++first) {
-    if (!is_way(first) || marks_[first] != 0) continue;
+  marks_.assign(half_edges(), 0);
+  for (HalfEdge first = 0; first < half_edges(); ++first) {
+    if (!is_half_edge(first) || marks_[first] != 0) continue;
     loop_.clear();
-    for (Way way = first; marks_[way] == 0; way = next_around_face(way)) {
-      marks_[way] = 1;
-      loop_.push_back(corner_of(way));
+    for (HalfEdge edge = first; marks_[edge] == 0; edge = next_around_face(edge)) {
+      marks_[edge] = 1;
+      loop_.push_back(corner_of(edge));
     }
     visit(std::span<const std::uint32_t>(loop_));
   }

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double most_waste = 16;
 constexpr double rounding_of_shares = 1e-12;
-constexpr double least_step = 1e-9;  // of the depth of a shape
+constexpr double least_step = 1e-9;  // relative to the depth of a shape
 
-/// Volume of the points deeper than z, over a constant factor.
+/// Volume of the points deeper than z, up to a constant factor.
 double inner_volume(const Box& box, double z) {
   Vector<3> inner = bounds_of(box).size();
   for (int k = 0; k < 3; ++k)
@@ -29,11 +29,9 @@ double inner_volume(const Cylinder& cylinder, double z) {
   return radius > 0 && height > 0 ? radius * radius * height : 0;
 }
 double inner_volume(const Sphere& sphere, double z) { return std::pow(std::max(0.0, sphere.radius - z), 3); }
-/// Those of facets are sampled.
-template <class Faceted>
-double inner_volume(const Faceted&, double) {
-  return 0;
-}
+/// Containers of facets are sampled.
+double inner_volume(const Mesh&, double) { return 0; }
+double inner_volume(const Polygon&, double) { return 0; }
 
 double deepest_of(const Box& box) {
   const Vector<3> size = bounds_of(box).size();
@@ -46,13 +44,11 @@ double deepest_of(const Cylinder& cylinder) {
   return cylinder.periodic ? cylinder.radius : std::min(cylinder.radius, 0.5 * cylinder.height);
 }
 double deepest_of(const Sphere& sphere) { return sphere.radius; }
-template <class Faceted>
-double deepest_of(const Faceted&) {
-  return 0;
-}
+double deepest_of(const Mesh&) { return 0; }
+double deepest_of(const Polygon&) { return 0; }
 
-/// How many cells a grid over the bounds has along each axis, so that there are about so many and they are
-/// about cubes; where the bounds are thinner than a cube, one layer of squares or one row.
+/// The number of cells along each axis of a grid of about `wanted` roughly cubic cells over the bounds; a
+/// single layer or row where the bounds are thinner than a cube.
 std::array<std::size_t, 3> cells_along(const Vector<3>& size, double wanted) {
   std::array<int, 3> by_size = {0, 1, 2};
   std::ranges::sort(by_size, {}, [&](int k) { return size[k]; });
@@ -65,9 +61,8 @@ std::array<std::size_t, 3> cells_along(const Vector<3>& size, double wanted) {
   return cells;
 }
 
-/// One point in each cell of a grid over the bounds, at random in it: what is known of the error of
-/// independent points is a bound for these. Where the container fills next to nothing of its bounds, points
-/// of its `Places`.
+/// One random point in each cell of a grid over the bounds: the error of independent points is an upper bound
+/// for these. If the container fills hardly any of its bounds, points of its `Places`.
 std::vector<double> sample(const Container& container, double reach, std::size_t points,
                            const std::optional<LowerPart>& below, double volume) {
   const Bounds<3> bounds = below ? below->cut(container.bounds()) : container.bounds();
@@ -119,7 +114,7 @@ Depths::Depths(const Domain& shape, const Container& container, double reach, st
   }
 }
 
-/// By halving: to where nothing of the inner shape is below the level.
+/// By bisection: the depth at which nothing of the inner shape is below the level.
 double Depths::deepest_below() const {
   double some = 0, none = deepest_;
   while (none - some > least_step * deepest_) {
@@ -129,7 +124,7 @@ double Depths::deepest_below() const {
   return none;
 }
 
-/// Of the shape, not of a mesh, or its part: what is deeper than z.
+/// The share of the shape (not a mesh), or of its part below the level, deeper than z.
 double Depths::inner_share(double z) const {
   const double whole =
       std::visit([z](const auto& s) { return inner_volume(s, z) / inner_volume(s, 0); }, shape_);

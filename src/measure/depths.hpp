@@ -8,32 +8,32 @@
 
 namespace bernal {
 
-/// How much of a container is how deep: the share of its volume farther than z from the wall. Exact to
-/// rounding for a box, a cylinder and a sphere, whose points deeper than z are a box, a cylinder and a sphere
-/// again, as long as before along axes that repeat themselves; for a mesh from points in the cells of a grid.
-/// Or how much of what of it is below a level.
+/// The distribution of depth in a container, or in its part below a level: the share of the volume farther
+/// than z from the wall. Exact to rounding for a box, a cylinder and a sphere, whose points deeper than z
+/// form a smaller shape of the same kind (as long as before along periodic axes); for a mesh from points in
+/// the cells of a grid.
 class Depths {
  public:
-  /// Looks at about `points` points inside a mesh, and no deeper than `reach`. Cost: up to 16 times as many
-  /// questions to the container where it fills little of its bounds.
+  /// Samples about `points` points inside a mesh, to a depth of `reach`. Cost: up to 16 times as many
+  /// container queries if it fills little of its bounds.
   Depths(const Domain&, const Container&, double reach, std::size_t points,
          const std::optional<LowerPart>& below = {});
 
-  /// Of the container, or of its part.
+  /// Volume of the container, or of its part.
   double volume() const { return volume_; }
 
-  /// 1 for z <= 0, and falling.
+  /// 1 for z <= 0, decreasing.
   double deeper(double z) const;
-  /// Standard error of a share: that of independent points, which is more than that of one a cell.
+  /// Standard error of a share, as of independent points: an upper bound for one point a cell.
   double error_of(double share) const;
-  /// The depth of the deepest point; of a mesh that of the deepest seen, infinite beyond `reach`.
+  /// The greatest depth; for a mesh the greatest found, infinite beyond `reach`.
   double deepest() const { return deepest_; }
 
  private:
   double inner_share(double z) const;
   double deepest_below() const;
 
-  Domain shape_;  // a mesh is left out
+  Domain shape_;  // unless it is a mesh
   std::optional<LowerPart> below_;
   double volume_;
   std::vector<double> sampled_;  // of the points in a mesh, ascending

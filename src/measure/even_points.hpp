@@ -8,9 +8,9 @@
 
 namespace bernal {
 
-/// The k-th of a sequence of points that fills the unit cube [0, 1)³ evenly: component j is frac((k + 1) /
-/// g^j), g the root of g⁴ = g + 1. The same bits everywhere.
-/// Source: M. Roberts, "The unreasonable effectiveness of quasirandom sequences" (2018).
+/// The k-th point of a sequence that fills the unit cube [0, 1)³ evenly: component j is frac((k + 1) / g^j),
+/// with g the root of g⁴ = g + 1. The same bits on every machine. Source: M. Roberts, "The unreasonable
+/// effectiveness of quasirandom sequences" (2018).
 inline Vector<3> even_point(std::uint64_t k) {
   constexpr std::uint64_t steps[3] = {0xD1B54A32D192ED03, 0xABC98388FB8FAC03,
                                       0x8CB92BA72F3D8DD7};  // 2^64 / g^j
@@ -19,8 +19,8 @@ inline Vector<3> even_point(std::uint64_t k) {
   return u;
 }
 
-/// The same in the ball of radius 1 about zero, the cube first shifted round by `shift`. With a shift drawn
-/// for each of many balls (Cranley & Patterson, SIAM J. Numer. Anal. 13 (1976) 904) their errors are
+/// The same in the unit ball about zero, with the cube first shifted periodically by `shift`. With a random
+/// shift for each of many balls (Cranley & Patterson, SIAM J. Numer. Anal. 13 (1976) 904) their errors are
 /// independent.
 inline Vector<3> even_point_in_ball(std::uint64_t k, const Vector<3>& shift) {
   Vector<3> u = even_point(k) + shift;

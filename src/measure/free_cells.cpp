@@ -10,10 +10,10 @@
 namespace bernal {
 namespace {
 
-constexpr int block = 16;                          // cells along an edge of what one task refines
+constexpr int block = 16;                          // cells along the edge of one task's block
 constexpr double steps_per_radius = 4;             // at least
 const double half_diagonal = 0.5 * std::sqrt(3.);  // of a cube of edge 1
-constexpr double widening = 1 + 1e-9;              // more than rounding takes
+constexpr double widening = 1 + 1e-9;              // larger than rounding
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Vector<3> FreeCells::center_of(const Cell& c, int size) const {
   return lower_ + edge_ * (Vector<3>(c[0], c[1], c[2]) + Vector<3>::Constant(0.5 * size));
 }
 
-/// Appends the nodes of a cube of `size` cells in the order of an octree.
+/// Appends the nodes of a cube of `size` cells in octree order.
 void FreeCells::refine(const Cell& cell, int size, std::vector<Node>& out) const {
   for (int k = 0; k < 3; ++k)
     if (cell[k] >= count_[k]) return;
@@ -84,7 +84,7 @@ std::uint32_t FreeCells::node_at(const Cell& c) const {
   return node_of_cell_[index(c)];
 }
 
-/// In a whole cube any point is one: the centre of the cell.
+/// Any point of a whole cube is a place: here the centre of the cell.
 Place FreeCells::place_in(const Cell& cell, const Node& node) const {
   if (node.size == 1) return node.place;
   const Vector<3> center = center_of(cell, 1);
@@ -119,7 +119,7 @@ void FreeCells::connect() {
         }
       }
 
-  // Each with its roomiest neighbour, which connects nearly all at the cost of one line each.
+  // Joins each with its neighbour of largest clearance, which connects nearly all for one chain each.
   std::vector<std::uint32_t> upward(nodes_.size(), none);
   parallel_for(nodes_.size(), [&](std::size_t n) {
     const Node& node = nodes_[n];

@@ -10,42 +10,41 @@ namespace bernal {
 
 /// The connected components of a free space, by a grid of cubes.
 ///
-/// An octree over the bounds: a cube whose clearance is so large or so small that it has nothing but places
-/// or none is left whole; of the smallest cubes the others keep one place each, that nearest to their centre,
-/// if they have one. Whole cubes that touch are connected; every other place is joined with the roomiest one
-/// of its 26 neighbours, and then with every neighbour that is not yet connected with it. Cost: a few
-/// clearances for every smallest cube that the boundary of the places cuts. Memory: 4 bytes a smallest
-/// cube, 48 a place.
+/// An octree over the bounds: a cube whose clearance shows that it consists of places only, or has none, is
+/// not refined; each of the other smallest cubes keeps one place, the nearest to its centre, if it has one.
+/// Touching whole cubes are connected; every other place is joined to the neighbour of largest clearance
+/// among the 26, and then to every neighbour not yet connected to it. Cost: a few clearances for every
+/// smallest cube on the boundary of the places. Memory: 4 bytes a smallest cube, 48 a place.
 class FreeCells {
  public:
-  /// Cubes of edge `edge`, as few as cover the bounds.
+  /// Uses the fewest cubes of edge `edge` that cover the bounds.
   FreeCells(const FreeSpace& space, double edge);
 
   std::size_t components() const { return deepest_.size(); }
-  /// A place well inside each component.
+  /// The place of largest clearance in a component.
   const Place& deepest(std::size_t component) const { return deepest_[component]; }
 
   struct Found {
     std::uint32_t component;
-    bool joined;  ///< false: only the nearest, no line of places was found
+    bool joined;  ///< false: only the nearest component; no chain of places was found
   };
-  /// The component of a place; absent where no place is known in its cell and the 26 about it.
+  /// The component of a place; absent if its cell and the 26 around it have no places.
   std::optional<Found> find(const Place&) const;
 
-  /// Two places are joined by pieces so short, see FreeSpace.
+  /// Length of the steps in a chain of places, see FreeSpace.
   double step() const { return step_; }
-  /// Or so short, where that would be pieces without number.
+  /// The same for chains that would have too many steps.
   double coarse_step() const { return edge_ / steps_per_cell; }
 
  private:
-  static constexpr double steps_per_cell = 16;  // in a line of places
+  static constexpr double steps_per_cell = 16;  // in a chain of places
   static constexpr std::uint32_t none = ~std::uint32_t{0};
   using Cell = std::array<int, 3>;
   struct Node {
     Place place;
-    Cell cell;   // its lowest
+    Cell cell;   // the lowest
     int size;    // in cells
-    bool whole;  // nothing but places
+    bool whole;  // consists of places only
   };
 
   void refine(const Cell&, int size, std::vector<Node>& out) const;
@@ -57,7 +56,7 @@ class FreeCells {
   std::uint32_t node_at(const Cell&) const;
   Place place_in(const Cell&, const Node&) const;
   Vector<3> center_of(const Cell&, int size) const;
-  /// Calls visit(cell, node) for the 26 neighbours that have a node.
+  /// Calls visit(cell, node) for those of the 26 neighbours with a node.
   template <class Visit>
   void for_each_neighbour(const Cell&, Visit&& visit) const;
   const FreeSpace& space_;

@@ -12,15 +12,15 @@ namespace {
 
 constexpr std::size_t most_planes = 12;
 constexpr int most_sweeps = 200;
-/// Of a line of places: more than it has between two neighbours of ordinary cells.
+/// In a chain of places: more than between neighbours in ordinary cells.
 constexpr int most_fine_pieces = 160;
-/// What the distance of the nearest facet may differ from the clearance, so that next to none but it are
-/// found: from the middle of a round part thousands are nearly as near.
+/// The nearest facet may be farther than the clearance by this, so that hardly any others are found: from the
+/// middle of a round part thousands are nearly as near.
 constexpr double within = 1 + 1e-9, roundoffs = 16;
 
-/// Half-spaces (x - point)·normal >= 0 and the point of all of them that is nearest to `start`: one
-/// multiplier a plane, by Hildreth's coordinate ascent.
-/// Source: C. Hildreth, Nav. Res. Logist. Q. 4 (1957) 79.
+/// Half-spaces (x - point)·normal >= 0 and the point in all of them that is nearest to `start`: one
+/// multiplier a plane, by Hildreth's coordinate ascent. Source: C. Hildreth, Nav. Res. Logist. Q. 4 (1957)
+/// 79.
 class HalfSpaces {
  public:
   explicit HalfSpaces(const Vector<3>& start) : start_(start), nearest_(start) {}
@@ -28,11 +28,11 @@ class HalfSpaces {
   bool full() const { return count_ == most_planes; }
   const Vector<3>& nearest() const { return nearest_; }
 
-  /// False where no point of all of them is as near as `limit`.
+  /// False if no common point is within `limit`.
   bool add(const Vector<3>& point, const Vector<3>& normal, double limit, double precision) {
     planes_[count_++] = {normal, normal.dot(point), 0};
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      double moved = 0, least = 0;  // least: the dual, half the squared distance or less
+      double moved = 0, least = 0;  // least: the dual, at most half the squared distance
       for (std::size_t k = 0; k < count_; ++k) {
         Plane& plane = planes_[k];
         const double multiplier = std::max(0.0, plane.multiplier + plane.offset - plane.normal.dot(nearest_));

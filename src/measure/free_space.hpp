@@ -5,14 +5,14 @@
 
 namespace bernal {
 
-/// A point where the centre of a sphere may be, and its clearance, or a lower bound of that.
+/// A possible centre of a sphere, with its clearance or a lower bound of it.
 struct Place {
   Vector<3> point;
   double clearance;
 };
 
-/// The places of spheres of radius r in a container: the points whose clearance is r, or less by a
-/// ten-thousandth of r, which keeps a tube as wide as the spheres from having none but its axis.
+/// The places of spheres of radius r in a container: the points with clearance of at least r, less a
+/// ten-thousandth of r, without which a tube as wide as the spheres would have places only on its axis.
 class FreeSpace {
  public:
   FreeSpace(const Container& container, double r) : container_(container), r_(r) {}
@@ -21,18 +21,18 @@ class FreeSpace {
   double radius() const { return r_; }
   bool is_place(double clearance) const { return clearance >= (1 - slack) * r_; }
 
-  /// About the place nearest to p, if it is at most `limit` away and p inside; for a wedge of planes it is
-  /// the nearest one. The planes in which a ball of radius r touches the wall are found one after the other,
-  /// from the wall's nearest point, and the nearest point beyond all of them is tried next. Where the wall
-  /// bulges inwards the planes cut off places: the place found is then farther than need be. Cost: two
-  /// searches for the nearest wall a plane.
+  /// Approximately the nearest place to p, if at most `limit` away, for p inside; exactly the nearest for a
+  /// wedge of planes. The planes in which a ball of radius r touches the wall are found one by one, starting
+  /// at the wall's nearest point; each time the nearest point beyond all of them is tried next. If the wall
+  /// bulges inwards, planes exclude some places, and the result is farther than necessary. Cost: two
+  /// nearest-wall searches a plane.
   std::optional<Place> nearest(const Vector<3>& p, double limit) const;
 
-  /// Whether a line of places leads from one place to the other, near the straight one. Sure where the
-  /// balls a.clearance - r and b.clearance - r meet, as clearance is 1-Lipschitz; else the line is halved at
-  /// the place nearest to its middle, down to pieces of length `step`, of which a neck may be closer than r
-  /// by step² / 8r where it is sharp. After so many pieces that the line must be very long for r, as through
-  /// the cells of a plate, pieces of length `coarse` will do.
+  /// Whether a chain of places leads from one place to the other, near the straight line. Certain if the
+  /// balls of radius a.clearance - r and b.clearance - r meet, as clearance is 1-Lipschitz; else the line is
+  /// bisected at the place nearest to its middle, down to pieces of length `step`, within which a sharp neck
+  /// may be narrower than r by step² / 8r. After many pieces, when the line is very long compared with r (as
+  /// in a plate), pieces of length `coarse` suffice.
   bool joined(const Place& a, const Place& b, double step, double coarse) const;
 
  private:

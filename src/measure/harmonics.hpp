@@ -6,8 +6,8 @@
 
 namespace bernal {
 
-/// The 13 real spherical harmonics of degree 6, so normalised that the sum over all of them is Legendre's
-/// polynomial of the angle between two directions: h(a)·h(b) = P6(a·b). Even: h(-a) = h(a).
+/// The 13 real spherical harmonics of degree 6, normalised so that h(a)·h(b) = P6(a·b), Legendre's polynomial
+/// of the angle between two directions. Even: h(-a) = h(a).
 using Harmonics6 = Eigen::Matrix<double, 13, 1>;
 
 /// Precondition: `u` of unit length. Error: some roundoffs.

@@ -26,10 +26,10 @@ Boundary<3> boundary_in_space(const Domain& domain) {
   return boundary;
 }
 
-/// Whether bounds and periods are all the walls that there are.
+/// Whether bounds and periods are the only walls.
 bool is_box(const Domain& domain) { return std::holds_alternative<Box>(domain); }
 
-/// What was not looked at goes.
+/// Drops the spheres that were not evaluated.
 void keep(const std::vector<std::uint8_t>& looked_at, LocalPacking& local) {
   const auto keep_of = [&](auto& all) {
     std::size_t kept = 0;

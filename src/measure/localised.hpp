@@ -4,14 +4,14 @@
 
 namespace bernal {
 
-/// Spheres in the container's own frame, where rounding errors are as small as they can be: far from the
-/// origin the scene's coordinates would lose the digits that tell a contact from a gap. The wall there is
+/// Spheres in the container's own frame, where rounding errors are smallest: far from the origin the scene's
+/// coordinates lose the digits that distinguish a contact from a gap. The matching wall is
 /// `make_local_container`'s.
 inline Spheres<3> localised(const Spheres<dynamic>& spheres, const Frame& frame) {
   Spheres<3> local;
   local.reserve(spheres.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    Vector<3> center = Vector<3>::Zero();  // of two dimensions in the plane z = 0
+    Vector<3> center = Vector<3>::Zero();  // two dimensions lie in the plane z = 0
     center.head(spheres.dimension()) = spheres.center(i);
     local.push_back(frame.to_local(center), spheres.r[i] / frame.scale);
   }

@@ -45,7 +45,7 @@ double packing_fraction(const Spheres<dynamic>& spheres, const Domain& domain) {
 
 namespace {
 
-/// Beyond it products of lengths are no numbers.
+/// Products of larger lengths overflow.
 constexpr double longest = 1e100;
 
 void require_measurable(const Spheres<dynamic>& spheres) {

@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t spheres_a_piece = 1024;
 
-/// Looks around one sphere after the other, each time as far as it takes to meet another one.
+/// Searches around one sphere after the other, widening each search until another sphere is found.
 template <int D>
-class Lookout {
+class NeighbourSearch {
  public:
-  Lookout(const Spheres<D>& spheres, const Boundary<D>& boundary, double gap, double contact_gap)
+  NeighbourSearch(const Spheres<D>& spheres, const Boundary<D>& boundary, double gap, double contact_gap)
       : spheres_(spheres),
         boundary_(boundary),
         levels_(levels_of(spheres, boundary, contact_gap)),
@@ -38,7 +38,7 @@ class Lookout {
     const Vector<D> c = boundary_.wrap(spheres_.center(i));
     const double r = spheres_.r[i];
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    constexpr double first = 0.25, wider = 3;  // of a radius; of what was looked at before
+    constexpr double first = 0.25, wider = 3;  // in radii; growth of the search radius
     double reach = first * r;
     contacts = 0;
     gap = infinity;
@@ -49,7 +49,7 @@ class Lookout {
               gap = std::min(gap, distance - radii);
             });
     while (gap > reach && (gap < infinity || reach <= farthest_)) {
-      reach = gap < infinity ? gap : wider * reach;  // what is nearer than that, if anything, is within it
+      reach = gap < infinity ? gap : wider * reach;  // anything nearer is within it
       for (const SizeLevel<D>& level : levels_)
         visit(level, i, c, r + level.largest + reach,
               [&](double distance, double radii) { gap = std::min(gap, distance - radii); });
@@ -57,8 +57,8 @@ class Lookout {
   }
 
  private:
-  /// Below it the centres of spheres with these radii together are in contact: with half the gap around each,
-  /// (d - s) / s < contact_gap for the sum s of those.
+  /// Centres nearer than this are in contact, for spheres whose radii sum to `radii`: with half the gap
+  /// around each, (d - s) / s < contact_gap for the sum s of the enlarged radii.
   double reach_of_contact(double radii) const { return (1 + contact_gap_) * (radii + gap_); }
 
   template <class Visit>
@@ -81,7 +81,7 @@ template <int D>
 Neighbourhoods look_around(const Spheres<D>& spheres, const Boundary<D>& boundary,
                            std::span<const std::uint32_t> of, double gap, double contact_gap, double scale) {
   Neighbourhoods found{std::vector<std::uint32_t>(of.size()), std::vector<double>(of.size())};
-  const Lookout<D> lookout(spheres, boundary, gap / scale, contact_gap);
+  const NeighbourSearch<D> lookout(spheres, boundary, gap / scale, contact_gap);
   parallel_ranges(of.size(), spheres_a_piece, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       lookout.look(of[k], found.contacts[k], found.gaps[k]);

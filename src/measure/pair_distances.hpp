@@ -10,8 +10,8 @@
 
 namespace bernal {
 
-/// The centres, and for each of them those within reach, which is at most half of every period, so that a
-/// point is met once at most.
+/// The centres within reach of each centre. The reach is at most half of every period, so that each is
+/// visited at most once.
 template <int D>
 class Surroundings {
  public:
@@ -26,10 +26,10 @@ class Surroundings {
     cost_ = std::min(in_cells, static_cast<double>(spheres.size()));
   }
 
-  /// Distances that have to be computed for one centre, about.
+  /// Approximate number of distances computed for one centre.
   double cost() const { return cost_; }
 
-  /// Calls visit(id, id of the other, squared distance) for the centre at that place of the grid's order.
+  /// Calls visit(id, id of the other, squared distance) for the centre at that position in the grid's order.
   template <class Visit>
   void for_each(std::size_t place, Visit&& visit) const {
     const double squared_reach = reach_ * reach_;
@@ -48,7 +48,7 @@ class Surroundings {
   }
 
  private:
-  /// The periods, and along open axes what the spheres take up.
+  /// The periods; along open axes the extent of the spheres.
   static Vector<D> size_of(const Spheres<D>& spheres, const Boundary<D>& boundary) {
     Vector<D> size = boundary.edges;
     for (int k = 0; k < D; ++k) {
@@ -58,7 +58,7 @@ class Surroundings {
     }
     return size;
   }
-  /// A quarter of the reach, but not so small that cells stand empty.
+  /// A quarter of the reach, but large enough that few cells are empty.
   double cell_edge(std::size_t n) const {
     return std::max(reach_ / 4, std::pow(size_.prod() / static_cast<double>(n), 1.0 / D));
   }
@@ -71,11 +71,11 @@ class Surroundings {
   double cost_ = 0;
 };
 
-/// Looks from as many centres as `work`, a number of distances, allows, but from a hundred at least, evenly
-/// spread over the grid's order and so over the domain. What is found is added to copies of `empty`, a
-/// `Tally` with reach(), add(id, id of the other, squared distance) and add(another tally), which are added
-/// up in the same order whatever the number of threads. `references` becomes the number of centres looked
-/// from. Preconditions: there are spheres; reach at most half of every period.
+/// Visits the pairs of as many centres as `work`, a number of distances, allows (at least a hundred), evenly
+/// spread over the grid's order and so over the domain. Results are added to copies of `empty`, a `Tally`
+/// with reach(), add(id, id of the other, squared distance) and add(another tally), which are summed in the
+/// same order for any number of threads. `references` becomes the number of centres. Preconditions: there are
+/// spheres; reach at most half of every period.
 template <int D, class Tally>
 Tally tally_of_pairs(const Spheres<D>& spheres, const Boundary<D>& boundary, const Tally& empty, double work,
                      std::uint64_t& references) {
@@ -97,7 +97,7 @@ Tally tally_of_pairs(const Spheres<D>& spheres, const Boundary<D>& boundary, con
   return sum;
 }
 
-/// Which share of the directed pairs that were met is of pairs that are not met from their other end, too.
+/// The share of the directed pairs whose other direction was not visited.
 inline double share_of_distinct(std::uint64_t references, std::size_t spheres) {
   return 1 - 0.5 * static_cast<double>(references) / static_cast<double>(spheres);
 }

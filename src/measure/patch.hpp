@@ -4,25 +4,25 @@
 #include <numeric>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {
 
-/// Spheres that lie together in the middle of a packing, and what lies around them, for questions that take
-/// more memory a sphere than very many of them leave.
+/// A connected sample of spheres in the middle of a packing with its surroundings, for measurements that need
+/// too much memory for all spheres.
 template <int D>
 struct Patch {
-  Spheres<D> spheres;              ///< those that are asked about first
-  std::vector<std::uint32_t> ids;  ///< of these in the packing
+  Spheres<D> spheres;              ///< the sample first
+  std::vector<std::uint32_t> ids;  ///< indices in the packing
   std::size_t asked = 0;
-  Boundary<D> boundary;  ///< has a period where the patch goes all around
+  Boundary<D> boundary;  ///< periodic where the patch spans the period
 };
 
-/// The `most` spheres that are nearest to the one nearest to `middle`, by the largest of the differences of
-/// their coordinates, and around them all that are at most `margin` farther; all where there are no more.
-/// Cost: O(N), 8 bytes a sphere for a while.
+/// The `most` spheres nearest to the one nearest to `middle`, by the largest coordinate difference, and
+/// around them all that are at most `margin` farther; all spheres if there are no more. Cost: O(N), 8 bytes a
+/// sphere temporarily.
 template <int D>
 Patch<D> patch_of(const Spheres<dynamic>& spheres, const Boundary<D>& boundary, const Vector<D>& middle,
                   std::size_t most, double margin) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t points_a_part = 512, most_bins = 100;
 
-/// The distances from points to the nearest solid, negative in spheres.
+/// The distances from points to the nearest solid, negative inside spheres.
 std::vector<double> distances_in_period(const Spheres<dynamic>& packed, const Domain& domain,
                                         std::size_t points) {
   std::vector<double> found(points);

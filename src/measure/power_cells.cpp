@@ -15,7 +15,7 @@ namespace {
 using Tree = SphereTree<3>;
 
 constexpr std::size_t cells_a_piece = 64;
-/// Of the way to the farthest corner: what a plane takes off by less is rounding.
+/// Relative to the distance of the farthest corner: smaller cuts are rounding.
 constexpr double rounding_of_cuts = 1e-12;
 
 class Diagram {
@@ -23,7 +23,7 @@ class Diagram {
   Diagram(const Spheres<3>& spheres, const CellBox& box, const VisitCell& visit)
       : box_(box), visit_(visit), tree_(spheres, box.boundary) {}
 
-  /// Of so many, which the order of the tree spreads over the domain.
+  /// Visits `count` cells, which the order of the tree spreads over the domain.
   void visit_some(std::size_t count) const {
     parallel_ranges(count, cells_a_piece, [&](std::size_t first, std::size_t last) {
       Piece piece;
@@ -36,20 +36,20 @@ class Diagram {
   }
 
  private:
-  /// The points p with p·normal > offset belong to the sphere at `place`.
+  /// The bisector: points p with p·normal > offset belong to the sphere at `place`.
   struct Plane {
     double distance;  ///< from the cell's centre
     Vector<3> normal;
     double offset;
     std::uint32_t place;
   };
-  /// Moved by `shift`; how near the nearest plane with one of its spheres may come.
+  /// A leaf moved by `shift`, with a lower bound on the distance of its spheres' planes.
   struct Leaf {
     double least;
     const Tree::Node* node;
     const Vector<3>* shift;
   };
-  /// What is kept from cell to cell for its memory.
+  /// Scratch memory, kept from cell to cell.
   struct Piece {
     ConvexCell cell;
     std::vector<Leaf> leaves;
@@ -75,7 +75,7 @@ class Diagram {
     if (box_.trim) box_.trim(tree_.center(place), cell);
   }
 
-  /// How far its farthest corner is; less than any plane where nothing is left.
+  /// Distance of its farthest corner; below any plane's if the cell is empty.
   double reach_of(const ConvexCell& cell) const {
     if (cell.empty()) return -infinite;
     double farthest = 0;
@@ -84,26 +84,26 @@ class Diagram {
     return std::sqrt(farthest);
   }
 
-  /// How near the plane between spheres comes to the centre of one whose weight is `weight`, where the other
-  /// is farther than the root of `squared` and no larger than r.
+  /// Lower bound on the distance of the bisector from a centre with squared radius `weight`, for another
+  /// sphere at a squared distance of at least `squared` and a radius of at most r.
   static double nearest_plane(double weight, double squared, double r) {
     const double more = weight - r * r, d = std::sqrt(std::max(squared, more));
     return d > 0 ? 0.5 * (d + more / d) : more < 0 ? -infinite : 0;
   }
-  /// Whether that is below `limit`, which is positive, but for rounding.
+  /// Whether that is below `limit`, which is positive, to rounding.
   static bool comes_below(double weight, double squared, double r, double limit) {
     const double more = weight - r * r, far = std::max(squared, more), sum = far + more;
     return sum <= 0 || sum * sum < 4 * limit * limit * far;
   }
 
-  /// A guess at how far a cell reaches.
+  /// A guess of the cell's reach.
   double first_look(std::uint32_t place, double reach) const {
     constexpr double radii = 1.25, least = 1e-3;
     return std::max(radii * tree_.radius(place), least * reach);
   }
 
-  /// All that is near is looked at in the order of how near it may come; and what is farther, as long as the
-  /// cell still reaches there.
+  /// Visits what is near in the order of its lower bounds, and what is farther as long as the cell reaches
+  /// there.
   void cut_out(std::uint32_t place, Piece& piece) const {
     throw_if_interrupted();
     begin(piece.cell, place);
@@ -128,7 +128,7 @@ class Diagram {
     }
   }
 
-  /// With planes in rising order, of which a leaf has so few that they need not be sorted.
+  /// Cuts by the planes in ascending order; a leaf has so few that sorting is not worthwhile.
   void cut_by(Piece& piece, double& reach) const {
     std::vector<Plane>& planes = piece.planes;
     while (!planes.empty()) {
@@ -143,8 +143,8 @@ class Diagram {
     }
   }
 
-  /// With the spheres of a leaf. With the same centre the larger one hides the other, and of two that are
-  /// equal the first.
+  /// Finds the planes with the spheres of a leaf. With equal centres the larger sphere hides the other; of
+  /// two equal ones, the first.
   void find_planes(std::uint32_t place, const Tree::Node& leaf, const Vector<3>& shift, double reach,
                    std::vector<Plane>& planes) const {
     const double r = tree_.radius(place);

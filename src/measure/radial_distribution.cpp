@@ -10,10 +10,10 @@
 namespace bernal {
 namespace {
 
-/// How far below a bin a distance may lie and still count in it, in bins: a contact that was rounded.
+/// A distance may be below a bin by this share of the width and still count in it: a rounded contact.
 constexpr double slack = 1e-6;
 
-/// The bins out to a distance, and what is found in them.
+/// A histogram of distances.
 class Histogram {
  public:
   Histogram(std::size_t bins, double width) : counts_(bins, 0), width_(width) {}
@@ -37,7 +37,7 @@ double shell_volume(int dimension, double from, double to) {
   return ball_volume(dimension, to) - ball_volume(dimension, from);
 }
 
-/// Of the n·references directed distances as many are counted from both ends as chance has it.
+/// Pairs of two references count from both ends; the error is that of the expected number of distinct pairs.
 void normalise(const std::vector<std::uint64_t>& counts, const Spheres<dynamic>& spheres, double volume,
                RadialDistribution& radial) {
   const auto n = static_cast<double>(spheres.size());

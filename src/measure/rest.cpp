@@ -21,25 +21,25 @@
 namespace bernal {
 namespace {
 
-/// A way that keeps less than this of the fall is no fall any more, but rolling.
+/// Movement that keeps less than this share of the fall is rolling.
 constexpr double least_share = 0.5;
-/// More walls at once, all of them upright, leave no way.
+/// With more upright walls at once there is no way down.
 constexpr std::size_t most_upright = 8;
-/// A sphere that is passed with this much or less of its surface's slope (sine) in the way is not met: so
-/// much rounding may do to one that stands beside.
+/// A sphere is not met if the slope (sine) of its surface along the path is at most this: rounding may cause
+/// as much for a sphere beside it.
 constexpr double beside = 1e-6;
-/// A sphere that is known to hang falls past walls as a ball that is smaller by this share, or the ones that
-/// are upright but for a rounding would stop it.
+/// A hanging sphere falls past walls as a ball smaller by this share; otherwise walls that are upright to
+/// rounding would stop it.
 constexpr double grazing = 1e-3;
-/// Of walls whose normals enclose a smaller angle (1 - cosine) one is enough.
+/// Walls whose normals differ by a smaller angle (1 - cosine) count once.
 constexpr double same_normal = 1e-6;
 constexpr double rounding_of_normals = 1e-9;
-/// A round wall holds a sphere on all sides that has no more play in it than so many open contacts.
+/// A round wall holds a sphere on all sides if its play is at most this many contact gaps.
 constexpr double snug = 10;
 
 using Normals = std::vector<Vector<3>>;  // unit, from walls to the sphere
 
-/// The unit vector that falls most of those that lead into none of the walls; zero if there is none.
+/// The steepest unit vector that leads into none of the walls; zero if there is none.
 Vector<3> way_past(const Vector<3>& direction, const Normals& normals) {
   Vector<3> best = Vector<3>::Zero();
   const auto offer = [&](const Vector<3>& way) {
@@ -60,7 +60,7 @@ Vector<3> way_past(const Vector<3>& direction, const Normals& normals) {
   return best;
 }
 
-/// The spheres between their walls, in the frame of these.
+/// The spheres between their walls, in the walls' frame.
 class SpheresInWalls {
  public:
   SpheresInWalls(const Spheres<3>& spheres, const Boundary<3>& boundary, const Container& container,
@@ -73,9 +73,8 @@ class SpheresInWalls {
         level_(std::max(Rest::level, tolerance)),
         least_closed_(2 * tolerance::skin(std::ranges::min(spheres.r), container.resolution())) {}
 
-  /// The sine of the steepest way down that is open to sphere i; 0 where it rests. Of many contacts a few
-  /// decide: those are taken together, one after the other, that the best way past the others leads into
-  /// most.
+  /// The sine of the steepest free way down for sphere i; 0 if it rests. Only a few contacts matter: those
+  /// are added one by one that the best way past the others leads into most.
   double slope(std::size_t i) const {
     const Normals normals = normals_at(i);
     Normals few;
@@ -94,7 +93,7 @@ class SpheresInWalls {
 
   bool hangs(std::size_t i) const { return !way_down(i).isZero(0); }
 
-  /// Of one that hangs: how far it could fall.
+  /// The length of a hanging sphere's fall.
   double fall(std::size_t i) const {
     const double r = spheres_.r[i], start = Rest::least_fall * r;
     const Vector<3> p = spheres_.center(i) + start * way_down(i);
@@ -104,7 +103,7 @@ class SpheresInWalls {
   }
 
  private:
-  /// How far sphere i, put at p, may move along u until it meets another one; at most `limit`.
+  /// Distance that sphere i, placed at p, can move along u until it meets another; at most `limit`.
   double first_sphere(std::size_t i, const Vector<3>& p, const Vector<3>& u, double limit) const {
     const double r = spheres_.r[i];
     tree_.for_each_on_way(p, r, u, limit, [&](std::uint32_t place, const Vector<3>& center) {
@@ -119,7 +118,7 @@ class SpheresInWalls {
     return limit;
   }
 
-  /// Of what sphere i touches, unit, towards it; of walls whose normals are the same, one.
+  /// Unit normals of the contacts of sphere i, towards it; one for walls with equal normals.
   Normals normals_at(std::size_t i) const {
     const Vector<3> p = spheres_.center(i);
     const double r = spheres_.r[i], reach = r + std::max(closed_ * r, least_closed_);
@@ -143,7 +142,7 @@ class SpheresInWalls {
     return normals;
   }
 
-  /// Of a round wall that the sphere just fits into, which holds it on all sides.
+  /// Normals of a round wall into which the sphere just fits, which holds it on all sides.
   void add_all_around(Normals& normals, const Facet& round) const {
     const bool has_axis = round.kind == Facet::Kind::cylinder;
     const Vector<3> across = has_axis ? Vector<3>(round.b.unitOrthogonal()) : direction_;
@@ -161,7 +160,7 @@ class SpheresInWalls {
     if (!is_known(normals, n)) normals.push_back(n);
   }
 
-  /// The unit vector along which sphere i can move, past walls that are upright; zero where it cannot.
+  /// The unit vector along which sphere i can move past upright walls; zero if it cannot.
   Vector<3> way_down(std::size_t i) const {
     const double step = Rest::least_fall * spheres_.r[i];
     Normals upright;
@@ -175,7 +174,8 @@ class SpheresInWalls {
     return Vector<3>::Zero();
   }
 
-  /// Whether a wall supports sphere i, moved along u; if not, what other walls it then overlaps is added.
+  /// Whether a wall supports sphere i after a move along u; otherwise appends the walls that it then
+  /// overlaps.
   bool wall_supports(std::size_t i, const Vector<3>& u, Normals& upright) const {
     const double r = spheres_.r[i];
     const Vector<3> p = spheres_.center(i) + Rest::least_fall * r * u;
@@ -196,11 +196,11 @@ class SpheresInWalls {
   const Container& container_;
   Vector<3> direction_;
   double closed_, level_;
-  double least_closed_;  // where coordinates are too coarse for a millionth of a radius
+  double least_closed_;  // if coordinates are too coarse for a millionth of a radius
 };
 
 constexpr std::string_view how_to_import =
-    "a packing of another program has walls where it is imported with ‹periodic=none›";
+    "for the packing of another program, import with ‹periodic=none› makes its box walls";
 
 Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
              const RestOptions& options, const std::shared_ptr<const Container>& made) {

@@ -11,21 +11,22 @@ namespace {
 
 using std::numbers::pi;
 
-/// A corner of a cell as a round wall sees it: from its axis, and how far along that, or from its centre.
+/// A corner relative to a round wall: its offset from the axis and its position along that, or its offset
+/// from the centre.
 template <int N>
-struct Seen {
+struct WallCorner {
   Vector<N> at;
   double along;
   bool inside;
 };
 
-/// The share of the way from a to b that is inside of the ball about zero: from >= to where there is none.
-/// What is said of the corners holds, so that around a loop ways in and out take turns.
+/// The part of the line from a to b inside the ball about zero; from >= to if there is none. Consistent with
+/// the corners' own sides, so that ways in and out alternate around a loop.
 struct Part {
   double from, to;
 };
 template <int N>
-Part part_inside(const Seen<N>& a, const Seen<N>& b, double radius) {
+Part part_inside(const WallCorner<N>& a, const WallCorner<N>& b, double radius) {
   if (a.inside && b.inside) return {0, 1};
   const Vector<N> d = b.at - a.at;
   const double squared = d.squaredNorm();
@@ -39,24 +40,23 @@ Part part_inside(const Seen<N>& a, const Seen<N>& b, double radius) {
 }
 
 double cross(const Vector<2>& a, const Vector<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
-/// By which a line from a to b turns about zero.
+/// The angle by which a line from a to b turns about zero.
 double turn(const Vector<2>& a, const Vector<2>& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
 /// x - sin x
-double without_sine(double x) {
+double x_minus_sin(double x) {
   if (std::abs(x) > 0.5) return x - std::sin(x);
   const double s = x * x;
   return x * s / 6 *
          (1 - s / 20 * (1 - s / 42 * (1 - s / 72 * (1 - s / 110 * (1 - s / 156 * (1 - s / 210))))));
 }
 
-/// The integral of a linear function z over what a polygon, whose corners come one after the other, has of a
-/// disc about zero; negative where they go round clockwise. As z may be as steep as that of a face nearly
-/// along the axis, whose shadow is a sliver, nothing is asked for it but between corners of what is inside,
-/// and in segments of the disc.
+/// The integral of a linear function z over the part of a polygon inside a disc about zero; negative for
+/// clockwise corners. z may be very steep on a face nearly parallel to the axis, whose projection is a
+/// sliver, so z is evaluated only between corners of the inner part and in segments of the disc.
 class OverDisc {
  public:
-  OverDisc(std::span<const Seen<2>> loop, double radius) : loop_(loop), radius_(radius) {
+  OverDisc(std::span<const WallCorner<2>> loop, double radius) : loop_(loop), radius_(radius) {
     find_plane();
     find_ways();
   }
@@ -80,7 +80,7 @@ class OverDisc {
     Vector<2> at;
     double z;
   };
-  /// A straight part of the boundary of what is inside, and how far the way to it turned outside.
+  /// A straight part of the inner region's boundary, and the angle turned outside before it.
   struct Way {
     Point in, out;
     double turned;
@@ -90,7 +90,7 @@ class OverDisc {
 
   void find_plane() {
     Vector<3> area = Vector<3>::Zero();
-    const auto from_first = [&](const Seen<2>& corner) {
+    const auto from_first = [&](const WallCorner<2>& corner) {
       const Vector<2> d = corner.at - loop_.front().at;
       return Vector<3>(d[0], d[1], corner.along - loop_.front().along);
     };
@@ -106,7 +106,7 @@ class OverDisc {
 
   void find_ways() {
     for (std::size_t k = 0; k < loop_.size(); ++k) {
-      const Seen<2>&a = loop_[k], &b = loop_[(k + 1) % loop_.size()];
+      const WallCorner<2>&a = loop_[k], &b = loop_[(k + 1) % loop_.size()];
       const Part part = part_inside(a, b, radius_);
       const auto point = [&](double share) {
         return Point{a.at + share * (b.at - a.at), a.along + share * (b.along - a.along)};
@@ -127,35 +127,35 @@ class OverDisc {
 
   double at_zero() const { return within_face(loop_.front().along - slope_.dot(loop_.front().at)); }
 
-  /// With the first point of all.
+  /// The triangle with the first point.
   double triangle(const Point& u, const Point& v) const {
     const Point& first = ways_.front().in;
     return 0.5 * cross(u.at - first.at, v.at - first.at) * (first.z + u.z + v.z) / 3;
   }
 
-  /// Between the chord from u to v and the arc that turns by so much.
+  /// Between the chord from u to v and the arc of this angle.
   double segment(const Point& u, const Point& v, double turned) const {
-    const double twice = without_sine(turned);
+    const double twice = x_minus_sin(turned);
     if (twice == 0) return 0;
     const double half = 0.5 * turned, sine = std::sin(half);
     const Vector<2> middle(std::cos(half) * u.at[0] - sine * u.at[1],
                            sine * u.at[0] + std::cos(half) * u.at[1]);  // of the arc
-    // The centroid's distance from zero over the radius, less that of the chord.
+    // The centroid's distance from zero over the radius, minus that of the chord.
     const double height = 4. / 3 * sine * sine * sine / twice - std::cos(half);
     return 0.5 * squared() * twice * within_face(0.5 * (u.z + v.z) + height * slope_.dot(middle));
   }
 
-  std::span<const Seen<2>> loop_;
+  std::span<const WallCorner<2>> loop_;
   double radius_;
   double twice_area_ = 0, lowest_ = 0, highest_ = 0;
   Vector<2> slope_ = Vector<2>::Zero();
   std::vector<Way> ways_;
-  double outside_ = 0;  ///< turned since the last of these
+  double outside_ = 0;  ///< angle turned since the last of these
 };
 
-/// What of the cones from zero over a face, with its loop anticlockwise as seen from outside of the cell, is
-/// in the ball about zero.
-double cone_in_ball(std::span<const Seen<3>> loop, double radius) {
+/// The part inside the ball about zero of the cones from zero over a face, whose loop is anticlockwise seen
+/// from outside the cell.
+double cone_in_ball(std::span<const WallCorner<3>> loop, double radius) {
   Vector<3> normal = Vector<3>::Zero();
   const Vector<3>& first = loop.front().at;
   for (std::size_t k = 1; k + 1 < loop.size(); ++k)
@@ -164,14 +164,14 @@ double cone_in_ball(std::span<const Seen<3>> loop, double radius) {
   normal.stableNormalize();
   const double height = normal.dot(first), away = std::abs(height);
   const Vector<3> towards = std::copysign(1.0, height) * normal;  // the nearest point of the face's plane
-  double twice_area = 0, angle = 0, turned = 0;                   // angle: solid, of what is outside
+  double twice_area = 0, angle = 0, turned = 0;                   // angle: solid angle of what is outside
   const auto add_outside = [&](const Vector<3>& u, const Vector<3>& v) {
     const double nu = u.norm(), nv = v.norm();
     angle += 2 * std::atan2(towards.dot(u.cross(v)), nu * nv + away * (nu + nv) + u.dot(v));
     turned += std::atan2(normal.dot(u.cross(v)), u.dot(v) - height * height);
   };
   for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Seen<3>&a = loop[k], &b = loop[(k + 1) % loop.size()];
+    const WallCorner<3>&a = loop[k], &b = loop[(k + 1) % loop.size()];
     const Part part = part_inside(a, b, radius);
     if (!(part.from < part.to)) {
       add_outside(a.at, b.at);
@@ -190,19 +190,19 @@ double cone_in_ball(std::span<const Seen<3>> loop, double radius) {
   return (0.5 * height * twice_area + cube * angle) / 3;
 }
 
-/// The sum of what `of_loop` says of the loops, as `see` sees their corners; the cell's own volume where all
-/// of them are inside.
+/// The sum of `of_loop` over the loops, with corners mapped by `see`; the cell's own volume if all are
+/// inside.
 template <int N, class See, class OfLoop>
 double sum_over_faces(const ConvexCell& cell, const See& see, const OfLoop& of_loop) {
-  std::vector<Seen<N>> seen, loop;
+  std::vector<WallCorner<N>> seen, loop;
   for (const Vector<3>& corner : cell.corners()) seen.push_back(see(corner));
   const double own = cell.volume();
-  if (std::ranges::all_of(seen, &Seen<N>::inside)) return own;
+  if (std::ranges::all_of(seen, &WallCorner<N>::inside)) return own;
   double sum = 0;
   cell.for_each_loop([&](std::span<const std::uint32_t> corners) {
     loop.clear();
     for (const std::uint32_t corner : corners) loop.push_back(seen[corner]);
-    sum += of_loop(std::span<const Seen<N>>(loop));
+    sum += of_loop(std::span<const WallCorner<N>>(loop));
   });
   return std::clamp(sum, 0.0, own);
 }
@@ -213,13 +213,13 @@ double volume_in_column(const ConvexCell& cell, const Vector<3>& from_base, cons
   const auto see = [&](const Vector<3>& p) {
     const Vector<3> w = from_base + p;
     const Vector<2> across(u.dot(w), v.dot(w));
-    return Seen<2>{across, axis.dot(p), across.squaredNorm() <= radius * radius};
+    return WallCorner<2>{across, axis.dot(p), across.squaredNorm() <= radius * radius};
   };
-  return sum_over_faces<2>(cell, see,
-                           [&](std::span<const Seen<2>> loop) { return OverDisc(loop, radius).integral(); });
+  return sum_over_faces<2>(
+      cell, see, [&](std::span<const WallCorner<2>> loop) { return OverDisc(loop, radius).integral(); });
 }
 
-/// `from_middle`: of the cell's centre.
+/// `from_middle`: position of the cell's centre.
 void cut_behind(ConvexCell& cell, const Vector<3>& from_middle, double radius) {
   const double away = from_middle.norm();
   if (away > 0) cell.cut(from_middle / away, radius - away, ConvexCell::wall);
@@ -230,7 +230,7 @@ void cut_behind(ConvexCell& cell, const Vector<3>& from_middle, double radius) {
 void cut_behind(ConvexCell& cell, const Vector<3>& center, const Cylinder& cylinder) {
   const Vector<3> axis = cylinder.axis.stableNormalized(), from_base = center - cylinder.base;
   const Vector<3> across = from_base - axis.dot(from_base) * axis;
-  // What rounding leaves of a centre on the axis may point along it.
+  // For a centre on the axis the rounded offset may point along it.
   constexpr double points_across = 1e-9;
   if (across.norm() > points_across * from_base.norm()) cut_behind(cell, across, cylinder.radius);
 }
@@ -242,7 +242,7 @@ void cut_behind(ConvexCell& cell, const Vector<3>& center, const Sphere& sphere)
 double volume_inside(const ConvexCell& cell, const Vector<3>& center, const Cylinder& cylinder) {
   if (cell.empty()) return 0;
   const Vector<3> axis = cylinder.axis.stableNormalized(), from_base = center - cylinder.base;
-  // Lids across a coordinate axis are those of the bounds, where cells end.
+  // Lids normal to a coordinate axis are those of the bounds, where cells end.
   if (cylinder.periodic || cylinder.coordinate_axis() >= 0)
     return volume_in_column(cell, from_base, axis, cylinder.radius);
   ConvexCell between_lids = cell;
@@ -258,10 +258,10 @@ double volume_inside(const ConvexCell& cell, const Vector<3>& center, const Sphe
   const double radius = sphere.radius;
   const auto see = [&](const Vector<3>& p) {
     const Vector<3> w = from_center + p;
-    return Seen<3>{w, 0, w.squaredNorm() <= radius * radius};
+    return WallCorner<3>{w, 0, w.squaredNorm() <= radius * radius};
   };
   return sum_over_faces<3>(cell, see,
-                           [&](std::span<const Seen<3>> loop) { return cone_in_ball(loop, radius); });
+                           [&](std::span<const WallCorner<3>> loop) { return cone_in_ball(loop, radius); });
 }
 
 }  // namespace bernal

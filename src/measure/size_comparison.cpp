@@ -12,26 +12,25 @@
 namespace bernal {
 namespace {
 
-/// Radii nearer than this, relatively, are one size: both distributions are compared just below and just
-/// above.
+/// Radii that differ by less, relatively, are one size; distributions are compared just below and just above.
 constexpr double same = 1e-12;
-/// A share that a single size must have to be an atom of the distribution: far more than the density of the
-/// narrowest continuous one puts between `same` below and `same` above.
+/// Least share of a single size that is an atom of the distribution: far more than the narrowest continuous
+/// distribution has within `same`.
 constexpr double atom = 1e-6;
 constexpr double fewest_expected = 5;
 constexpr std::size_t most_classes = 1000;
-/// Sizes whose shares are told one by one; of more those of tenths of the volume are. Limits nearer than this
-/// are one.
-constexpr std::size_t most_sizes_told = 20;
+/// The most sizes whose shares are listed one by one; for more, tenths of the volume are. Limits closer than
+/// this are merged.
+constexpr std::size_t most_sizes_listed = 20;
 constexpr int tenths = 10;
 constexpr double same_limit = 1e-6;
-/// A factor of all radii that is farther from 1 is none.
+/// The largest deviation from 1 of a common factor of all radii.
 constexpr double most_scaled = 0.05;
 
 double below(const SizeDistribution& asked, double radius) { return asked.cumulative(radius * (1 - same)); }
 double up_to(const SizeDistribution& asked, double radius) { return asked.cumulative(radius * (1 + same)); }
 
-/// 1 - K(lambda) for Kolmogorov's distribution K, from whichever of its two series converges at once.
+/// 1 - K(lambda) for Kolmogorov's distribution K, by the faster converging of its two series.
 double kolmogorov_above(double lambda) {
   if (lambda <= 0) return 1;
   if (lambda < 1.18) {
@@ -60,7 +59,7 @@ void compare_cumulative(const std::vector<double>& sorted, const SizeDistributio
   }
 }
 
-/// The sizes of a distribution that has no others, ascending, with their shares; nothing for any other.
+/// The sizes of a discrete distribution, ascending, with their shares; empty for any other.
 std::vector<SizeComparison::Class> classes_of(const SizeDistribution& asked) {
   std::vector<SizeComparison::Class> classes;
   for (double reached = 0; reached < 1 - atom;) {
@@ -107,7 +106,7 @@ void compare_means(const std::vector<double>& sorted, const SizeDistribution& as
   result.volume_ratio_error = std::sqrt(std::max(0.0, variance) / n);
 }
 
-/// Limits of tenths of the volume, ascending; one where several would be the same size.
+/// Limits of tenths of the volume, ascending; equal ones merged.
 std::vector<double> limits_by_volume(const SizeDistribution& asked, int dimension) {
   std::vector<double> limits;
   for (int k = tenths - 1; k > 0; --k) {
@@ -125,7 +124,7 @@ void compare_shares(const std::vector<double>& sorted, const SizeDistribution& a
   const double asked_volume = asked.moment(dimension);
   double volume = 0;
   for (const double r : sorted) volume += std::pow(r / sorted.back(), dimension);
-  // Of those from `first` up to that radius; returns the first that is larger.
+  // Counts from `first` up to that radius; returns the first larger one.
   const auto add = [&](std::size_t first, SizeComparison::Share share) {
     std::size_t last = first;
     for (; last < sorted.size() && sorted[last] <= share.up_to * (1 + same); ++last)
@@ -136,7 +135,7 @@ void compare_shares(const std::vector<double>& sorted, const SizeDistribution& a
     return last;
   };
   std::size_t next = 0;
-  if (!result.classes.empty() && result.classes.size() <= most_sizes_told) {
+  if (!result.classes.empty() && result.classes.size() <= most_sizes_listed) {
     for (const SizeComparison::Class& c : result.classes)
       next = add(next, {c.radius, c.radius, c.asked_share,
                         c.asked_share * std::pow(c.radius, dimension) / asked_volume, 0, 0, 0});
@@ -153,7 +152,7 @@ void compare_shares(const std::vector<double>& sorted, const SizeDistribution& a
   }
 }
 
-/// The smallest radius at or below which the share of the spheres lies.
+/// The smallest radius at or below which this share of the spheres lies.
 double quantile(const std::vector<double>& sorted, double share) {
   const double rank = std::ceil(share * static_cast<double>(sorted.size()));
   return sorted[static_cast<std::size_t>(std::max(1.0, rank)) - 1];

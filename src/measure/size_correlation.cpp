@@ -14,11 +14,11 @@
 namespace bernal {
 namespace {
 
-/// Of a radius: spheres that differ by less are equal.
+/// Relative to the radius: spheres that differ by less are equal.
 constexpr double size_rounding = 1e-12;
 constexpr double bin_slack = 1e-6;
 
-/// Sums over the pairs in bins of distance.
+/// Sums over pairs in bins of distance.
 class MarkTally {
  public:
   MarkTally(const std::vector<double>& marks, std::size_t bins, double width)
@@ -53,7 +53,7 @@ class MarkTally {
   double width_;
 };
 
-/// The radii less their mean, in standard deviations; none where all are equal.
+/// Standardised radii; empty if all are equal.
 std::vector<double> marks_of(const std::vector<double>& radii, double mean) {
   double squares = 0;
   for (const double r : radii) squares += (r / mean - 1) * (r / mean - 1);
@@ -64,7 +64,7 @@ std::vector<double> marks_of(const std::vector<double>& radii, double mean) {
   return marks;
 }
 
-/// The sums of the ends over all bonds, whose order does not matter to Pearson's correlation.
+/// Sums over both ends of all bonds, whose order does not affect Pearson's correlation.
 std::optional<SizeCorrelation::Neighbours> neighbours_of(const std::vector<NearPair>& bonds,
                                                          const std::vector<double>& marks) {
   double products = 0, sum = 0, squares = 0, n = 0;
@@ -91,7 +91,7 @@ double shortest_period(const Boundary<D>& boundary) {
   return shortest;
 }
 
-/// Of spheres and periods in any unit of length, that of the scene times 1 / `unit`.
+/// Spheres and periods may be in any unit of length, 1 / `unit` times the scene's.
 template <int D>
 std::optional<SizeCorrelation> correlation_in(const Spheres<D>& spheres, const Boundary<D>& boundary,
                                               double unit, const std::vector<NearPair>& bonds,
@@ -135,7 +135,7 @@ std::optional<SizeCorrelation> size_correlation(const Spheres<dynamic>& spheres,
                                                 const SizeCorrelationOptions& options) {
   if (spheres.size() < 2) return {};
   const auto [smallest, largest] = std::ranges::minmax(spheres.r);
-  if (smallest == largest) return {};  // at once
+  if (smallest == largest) return {};  // cheap test first
   const std::vector<NearPair> bonds =
       near_pairs_inside(spheres, domain, BondOrder::widest_gap,
                         spheres.size() > BondOrder::most_spheres ? BondOrder::looked_at : spheres.size());

@@ -16,13 +16,14 @@
 namespace bernal {
 namespace {
 
-/// Spheres whose waves are summed together, so that their tables stay in the cache; and in how many parts the
-/// sums are kept apart, which are then added in one order.
+/// The number of spheres whose waves are summed together, so that their tables stay in the cache; and of
+/// partial sums, which are added in a fixed order.
 constexpr std::size_t spheres_together = 32, most_parts = 64;
 constexpr double fewest_vectors = 8, most_vectors = 400;  // a bin
-constexpr double surely_higher = 4.5;  // standard deviations: one box of points in a hundred has such a bin
+// Standard deviations: one box of random points in a hundred has such a bin.
+constexpr double surely_higher = 4.5;
 
-/// exp(i 2π n x) of some spheres along one axis, for any n: from a table, where that is not too large.
+/// exp(i 2π n x) of some spheres along one axis, for any n: from a table unless it would be too large.
 class Waves {
  public:
   void fill(const std::vector<double>& x, double origin, double edge, std::size_t first, std::size_t count,
@@ -49,7 +50,7 @@ class Waves {
       }
     }
   }
-  /// The cosines, and after them the sines; 0 in place of spheres that there are not. Precondition: n >= 0.
+  /// The cosines, then the sines; 0 for missing spheres. Precondition: n >= 0.
   const double* of(int n) {
     if (n <= in_table_) return row(n);
     compute(n, one_.data());
@@ -113,7 +114,7 @@ class WaveSums {
   }
 
  private:
-  /// One after the other they would wait for each other.
+  /// Pairwise, which is faster than sequential sums.
   static double sum_in_halves(std::array<double, spheres_together>& values) {
     static_assert(std::has_single_bit(spheres_together));
     for (std::size_t half = spheres_together / 2; half > 0; half /= 2)
@@ -174,7 +175,7 @@ std::optional<StructureFactor::Peak> StructureFactor::peak() const {
       highest = b;
   if (!highest || *highest == 0 || *highest + 1 == k.size()) return {};
   const std::size_t b = *highest;
-  // Centres spread by chance have 1 ± 1/√vectors in every bin, and one of thirty is the highest.
+  // Random centres have 1 ± 1/√vectors in every bin; the highest of thirty bins must exceed this.
   const double by_chance = 1 + surely_higher / std::sqrt(static_cast<double>(vectors[b]));
   if (!(vectors[b] >= fewest_vectors && s[b] > s[b - 1] && s[b] > s[b + 1] && s[b] > by_chance)) return {};
   return Peak{k[b], s[b], error[b]};

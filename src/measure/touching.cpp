@@ -20,7 +20,7 @@
 namespace bernal {
 namespace {
 
-/// Of a pair and its mirror image, seen from the other end, exactly one is counted.
+/// Of a pair and its mirror image exactly one counts.
 template <int D>
 bool counts(std::uint32_t i, std::uint32_t j, const Vector<D>& d) {
   if (i != j) return i < j;
@@ -29,7 +29,7 @@ bool counts(std::uint32_t i, std::uint32_t j, const Vector<D>& d) {
   return false;
 }
 
-/// What is kept of a pair whose gap is below the widest that matters.
+/// Converts a pair with a gap below the widest.
 struct AsPair {
   using Found = NearPair;
   double widest;
@@ -66,8 +66,8 @@ struct AsRanked {
   }
 };
 
-/// The pairs of sphere i, at `c`, with spheres of its own level and of larger ones: each pair is met from its
-/// smaller end, which need not look far.
+/// Appends the pairs of sphere i, at `c`, with spheres of its own level and of larger ones: each pair is
+/// found from its smaller sphere, whose search radius is small.
 template <int D, class As>
 void append_pairs(const std::vector<double>& radii, std::span<const SizeLevel<D>> levels, std::uint32_t i,
                   const Vector<D>& c, const As& as, std::vector<typename As::Found>& out) {
@@ -85,7 +85,7 @@ void append_pairs(const std::vector<double>& radii, std::span<const SizeLevel<D>
   }
 }
 
-/// A sphere that is much larger than its box meets images without number.
+/// A sphere much larger than its box would meet countless images.
 template <int D>
 void require_countable_images(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
   constexpr double most_images = 1e6;  // of a sphere; one as large as its box meets 3^D
@@ -102,8 +102,8 @@ void require_countable_images(const Spheres<D>& spheres, const Boundary<D>& boun
                     largest, images));
 }
 
-/// Of spheres that do not overlap much, each has fewer such pairs with those of its size and larger ones than
-/// a sphere of its size can have neighbours, several times over.
+/// If spheres do not overlap much, each has fewer pairs with spheres of its size and larger ones than its
+/// possible neighbours, several times over.
 template <int D>
 std::size_t most_pairs(std::size_t spheres, double widest_gap) {
   constexpr double few = 1e6, neighbours = 100;
@@ -124,14 +124,14 @@ void require_few(std::size_t pairs, std::size_t most) {
 template <int D, class As>
 using Parts = std::vector<std::vector<typename As::Found>>;
 
-/// In parts, which follow each other.
+/// In consecutive parts.
 template <int D, class As>
 Parts<D, As> parts_among(Spheres<D> spheres, const Boundary<D>& boundary, const As& as) {
   constexpr std::size_t chunk = 4096;
   require_countable_images(spheres, boundary, as.widest);
   const std::size_t most = most_pairs<D>(spheres.size(), as.widest);
   const std::vector<SizeLevel<D>> levels = levels_of(spheres, boundary, as.widest);
-  spheres.x = {};  // the grids have them
+  spheres.x = {};  // the grids hold them
   Parts<D, As> parts;
   std::size_t pairs = 0;
   for (std::size_t l = 0; l < levels.size(); ++l) {
@@ -165,7 +165,7 @@ std::vector<Found> joined(std::vector<std::vector<Found>> parts) {
   return all;
 }
 
-/// Whether to work in the frame of the walls, which keeps the digits that far away would be lost.
+/// Whether to work in the frame of the walls, which keeps digits that are lost far from the origin.
 bool has_own_frame(const Domain& domain) { return has_walls(domain) && dimension_of(domain) == 3; }
 
 template <class As>
@@ -210,7 +210,7 @@ std::vector<NearBond> near_bonds(const Spheres<dynamic>& spheres, const Domain& 
 
 namespace {
 
-/// How far the centre of a neighbour is at most.
+/// The largest distance of a neighbour's centre.
 double bond_reach(const Spheres<dynamic>& spheres, double widest_gap) {
   return 2 * (1 + widest_gap) * std::ranges::max(spheres.r);
 }
@@ -267,7 +267,7 @@ std::vector<NearPair> near_pairs_inside(const Spheres<dynamic>& spheres, const D
 
 namespace {
 
-/// Those of a box of any dimension.
+/// The same for a box of any dimension.
 std::vector<NearWall> near_faces(const Box& box, const Spheres<dynamic>& spheres, double widest_gap) {
   std::vector<NearWall> near;
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {

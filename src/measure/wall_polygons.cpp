@@ -70,7 +70,7 @@ void WallPolygons::build() {
   walls_.swap(sorted);
 }
 
-/// What of a piece lies below a plane; nothing where it lies in the plane.
+/// The part of a piece below a plane; empty if the piece lies in the plane.
 WallPolygons::Piece WallPolygons::below(const Piece& piece, const Vector<3>& normal, double offset,
                                         double rounding) {
   Piece part{{}, piece.normal};
@@ -122,7 +122,7 @@ std::vector<WallPolygons::Piece> WallPolygons::pieces_in(const ConvexCell& cell,
 
 double WallPolygons::inside(const ConvexCell& cell, std::vector<Piece> pieces, const Vector<3>& center,
                             double rounding) const {
-  throw_if_interrupted();  // of a cell with very many walls
+  throw_if_interrupted();  // cells may have very many walls
   const double volume = cell.volume();
   if (cell.empty() || !(volume > 0)) return 0;
   if (pieces.empty()) {

@@ -8,20 +8,20 @@
 
 namespace bernal {
 
-/// The walls of a mesh or a polygon, for the share of convex cells that is inside of them: exact to rounding.
+/// The walls of a mesh or a polygon, for the volume of convex cells inside them, exact to rounding.
 ///
-/// The walls that a cell meets are clipped to it; the cell is then halved, with them, where they are many,
-/// and cut along the plane of the largest where they are few, until no wall is left in a part. Such a part is
-/// inside where its middle is.
+/// The walls in a cell are clipped to it; the cell is bisected, with its walls, while they are many, and cut
+/// along the plane of the largest wall when they are few, until a part has no walls. Such a part is inside if
+/// its middle is.
 class WallPolygons {
  public:
-  /// Precondition: a mesh or a polygon without an inset, in the coordinates of the container, which outlives
-  /// this. Those of a polygon stand upright on the plane z = 0, as tall as cells of two dimensions. Cost:
-  /// O(T log T); memory about 150 bytes a triangle.
+  /// Precondition: a mesh or a polygon without an inset, in the coordinates of the container, which must
+  /// outlive this. The walls of a polygon are normal to the plane z = 0, as high as cells of two dimensions.
+  /// Cost: O(T log T); memory about 150 bytes a triangle.
   WallPolygons(const Domain&, const Container&);
 
-  /// Volume, in two dimensions area, of what is inside of a cell in coordinates about `center`. Cost: 1 to 2
-  /// µs a part, of which there are a few more than walls in the cell.
+  /// Volume (area in two dimensions) inside of a cell in coordinates about `center`. Cost: 1 to 2 µs a part;
+  /// there are a few more parts than walls in the cell.
   double volume_inside(const ConvexCell& cell, const Vector<3>& center) const;
 
  private:
@@ -30,7 +30,7 @@ class WallPolygons {
     int corners;
     Vector<3> normal;
   };
-  /// A part of a wall in a cell, in coordinates about its centre.
+  /// The part of a wall in a cell, in coordinates about its centre.
   struct Piece {
     std::vector<Vector<3>> loop;
     Vector<3> normal;

@@ -19,18 +19,18 @@ namespace {
 
 constexpr std::size_t spheres_a_part = 256;
 constexpr double fewest_points = 8, most_points = 512;  // in a sphere
-/// In mean diameters: deeper, layers hardly differ and fewer points will do.
+/// In mean diameters: deeper layers hardly differ, and fewer points suffice.
 constexpr double structured = 2;
 constexpr double least_reach = WallProfile::core_depth + 1;
-/// A mesh has half of the work done in its spheres and half in itself; other walls are quickly asked.
+/// For a mesh half of the work is for its spheres and half for itself; other walls are faster.
 constexpr double mesh_share = 0.5, analytic_share = 4;
 
-/// What the spheres have of a zone of the container.
+/// The volume of spheres in a zone of the container.
 struct Filling {
   double volume = 0;
   double variance = 0;  ///< of the volume
 
-  /// `inside` of `points` points of a sphere of volume v lie in the zone.
+  /// Adds a sphere of volume v with `inside` of its `points` points in the zone.
   void add(double v, std::uint32_t inside, std::uint32_t points) {
     const double share = static_cast<double>(inside) / points;
     volume += v * share;
@@ -42,7 +42,7 @@ struct Filling {
   }
 };
 
-/// Zones between two depths: the layers, that near the wall and the core, which overlap the layers.
+/// Zones between two depths: the layers, the near-wall zone and the core, which overlap the layers.
 struct Zones {
   std::vector<double> edges;  ///< where the layers begin
   double near = 0, core = 0;
@@ -61,12 +61,11 @@ struct Zones {
   }
 };
 
-/// What the last layer has of the container at least: where next to nothing is deeper, a porosity is that of
-/// one pore or sphere.
+/// The least share of the last layer: in a smaller one the porosity would be that of a single pore or sphere.
 constexpr double least_rest = 0.01;
 
 /// Layers of equal thickness down to `reach`, or to half a layer from the deepest point, and one for the
-/// rest; none of them without volume.
+/// rest; all have a volume.
 std::vector<double> edges_of(const Depths& depths, double thickness, double reach) {
   constexpr double rounding = 1e-9;
   std::vector<double> edges = {0};
@@ -92,8 +91,8 @@ double volume_below(const LowerPart& part, const Vector<3>& center, double r) {
   return ball_below(3, r, part.height - part.height_of(center));
 }
 
-/// Spreads the volumes of the spheres over the zones: that of a sphere beyond reach goes whole. What is above
-/// the level is left out.
+/// Spreads the volumes of the spheres over the zones; spheres beyond reach count whole. Parts above the level
+/// are left out.
 std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
                           const std::vector<double>& clearance, const Zones& zones, double reach,
                           std::uint32_t points, const std::optional<LowerPart>& below) {
@@ -119,7 +118,7 @@ std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
         const Vector<3> away = r * even_point_in_ball(k, shift);
         if (cut && !below->contains(spheres.center(i) + away)) continue;
         ++looked;
-        // Clearance is 1-Lipschitz: a tight bound makes the question cheap.
+        // As clearance is 1-Lipschitz, a tight bound makes the query cheap.
         const double most = std::min(reach, clearance[i] + away.norm());
         zones.count(container.clearance_within(spheres.center(i) + away, most), inside);
       }
@@ -138,7 +137,7 @@ struct Fraction {
   double value, error;
 };
 
-/// Packing fraction of a zone that is `share` of the container.
+/// Packing fraction of a zone with this share of the container.
 Fraction fraction_of(const Filling& filling, double share, double share_error, double volume) {
   if (!(share > 0)) return {0, 0};
   const double value = filling.volume / (share * volume);
@@ -150,17 +149,17 @@ std::optional<WallProfile::Minimum> first_minimum(const WallProfile& profile, do
   const auto end = std::ranges::partition_point(
       layers, [&](const auto& layer) { return layer.from + 0.5 * thickness < profile.mean_diameter; });
   const auto lowest = std::ranges::min_element(layers.begin(), end, {}, &WallProfile::Layer::porosity);
-  const auto last_even = layers.end() - 1;  // the last layer may be of any thickness
+  const auto last_even = layers.end() - 1;  // the last layer may have any thickness
   if (lowest == layers.begin() || last_even - lowest < 2) return {};
   const double before = lowest[-1].porosity, least = lowest->porosity, after = lowest[1].porosity;
-  if (after < least) return {};  // it falls on
+  if (after < least) return {};  // decreasing further
   const double bend = before - 2 * least + after;
   const double shift = bend > 0 ? 0.5 * (before - after) / bend : 0;
   return WallProfile::Minimum{lowest->from + (0.5 + shift) * thickness,
                               least - 0.25 * (before - after) * shift};
 }
 
-/// The volumes of the spheres, in cubes of a mean radius, and what of them is in some place.
+/// The volumes of the spheres, in cubed mean radii, and their sums by place.
 class Volumes {
  public:
   Volumes(const std::vector<double>& radii, double mean_radius) {
@@ -169,7 +168,7 @@ class Volumes {
     for (const double cube : cubes_) squares_ += std::pow(cube - mean_, 2);
   }
 
-  /// Of so many places, where sphere i is in place_of(i), or in none of them.
+  /// Segregation in each of `places` places; place_of(i) is that of sphere i, or none of them.
   template <class PlaceOf>
   std::vector<std::optional<WallProfile::Segregation>> of(std::size_t places, PlaceOf&& place_of) const {
     std::vector<double> sum(places, 0), there(places, 0);
@@ -188,7 +187,7 @@ class Volumes {
  private:
   WallProfile::Segregation segregation(double sum, double there) const {
     const double n = count();
-    // Drawn from n without putting back.
+    // Drawn from n without replacement.
     const double error = n > 1 ? std::sqrt(squares_ / (n - 1) / there * (1 - there / n)) / mean_ : 0;
     return {static_cast<std::uint64_t>(there), sum / there / mean_, error};
   }
@@ -235,7 +234,7 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
   zones.near = diameter;
   zones.core = profile.has_core ? WallProfile::core_depth * diameter : 0.5 * depths.deepest();
 
-  // What is as deep as was looked lies in the last layer, which begins a rounding below that at most.
+  // A sphere at the search depth lies in the last layer, which begins at most a rounding below it.
   const double looked = std::max(reach, zones.edges.back());
   const std::vector<double> clearance = clearances(*container, spheres, looked);
   double within_reach = 0;

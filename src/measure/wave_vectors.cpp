@@ -10,7 +10,7 @@
 namespace bernal {
 namespace {
 
-/// How many vectors are looked through one by one.
+/// The most vectors that are enumerated.
 constexpr double most_looked_through = 2e5;
 constexpr std::size_t tries_a_vector = 20;
 constexpr double largest_multiple = 1e9;
@@ -18,9 +18,9 @@ constexpr double largest_multiple = 1e9;
 template <int D>
 using Multiples = Eigen::Matrix<int, D, 1>;
 
-/// One of n and -n, and not zero: its last component that is not 0 is positive.
+/// One of n and -n, and not zero: the last nonzero component is positive.
 template <int D>
-bool stands_for_two(const Multiples<D>& n) {
+bool is_representative(const Multiples<D>& n) {
   for (int k = D; k-- > 0;)
     if (n[k] != 0) return n[k] > 0;
   return false;
@@ -31,7 +31,7 @@ Vector<D> steps_of(const Vector<D>& edges) {
   return (2 * std::numbers::pi * edges.cwiseInverse()).eval();
 }
 
-/// The largest number of bins all of whose vectors are few enough to be looked through.
+/// The largest number of bins whose vectors are few enough to be enumerated.
 template <int D>
 std::size_t bins_looked_through(const Vector<D>& step, double width, std::size_t bins) {
   const auto vectors = [&](std::size_t count) {
@@ -56,12 +56,12 @@ void for_each_multiple(const Vector<D>& step, double longest, Visit&& visit) {
   for (int k = 0; k < D; ++k) limit[k] = static_cast<int>(std::floor(longest / step[k]));
   n = -limit;
   for (int k = 0; k < D;) {
-    if (stands_for_two<D>(n)) visit(n);
+    if (is_representative<D>(n)) visit(n);
     for (k = 0; k < D && ++n[k] > limit[k]; ++k) n[k] = -limit[k];
   }
 }
 
-/// `most` of them, evenly.
+/// Keeps `most` of them, evenly.
 template <int D>
 void thin_out(std::vector<WaveVector<D>>& vectors, std::size_t most) {
   if (vectors.size() <= most) return;
@@ -102,9 +102,9 @@ std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, dou
       if (!(multiples.cwiseAbs().maxCoeff() < largest_multiple)) continue;
       Multiples<D> n;
       for (int axis = 0; axis < D; ++axis) n[axis] = static_cast<int>(std::nearbyint(multiples[axis]));
-      if (!stands_for_two<D>(n)) n = -n;
+      if (!is_representative<D>(n)) n = -n;
       const double length = length_of(n);
-      if (!stands_for_two<D>(n) || static_cast<std::size_t>(length / width) != bin) continue;
+      if (!is_representative<D>(n) || static_cast<std::size_t>(length / width) != bin) continue;
       if (drawn.insert(n).second) found[bin].push_back({n, length});
     }
   }

@@ -5,9 +5,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "core/archive.hpp"
 #include "near/cell_layout.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/vector.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "core/archive.hpp"
 
 namespace bernal {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "bernal/domain/boundary.hpp"
+#include "bernal/core/boundary.hpp"
 #include "core/archive.hpp"
 #include "near/cell_grid.hpp"
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "core/parallel.hpp"
 #include "near/counting_sort.hpp"
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "near/point_grid.hpp"
 
 namespace bernal {

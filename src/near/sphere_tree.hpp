@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "near/box_tree.hpp"
 
 namespace bernal {

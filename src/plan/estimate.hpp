@@ -18,7 +18,7 @@ namespace bernal {
 double coverable_share(const Container& container, double r);
 
 /// The packing fraction that the scene's stages are likely to reach in a container when they may fill it.
-/// `made`: see run/fitting.hpp.
+/// `made`: see plan/fitting.hpp.
 double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
                                  const std::shared_ptr<const Container>& made = {});
 

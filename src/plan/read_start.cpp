@@ -8,14 +8,14 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
-#include "cad/known_formats.hpp"
+#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"
-#include "result/unpublished.hpp"
 #include "scene/given_files.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/stage_table.hpp"
+#include "scene/unpublished.hpp"
 #include "sizes/volume_carriers.hpp"
 
 namespace bernal {

@@ -8,13 +8,14 @@
 namespace bernal::predict {
 namespace {
 
-/// Of a piece of twice the width, relative to the smaller of what is longer and what is shorter.
+/// Of a piece of twice the width, relative to the smaller of the longer and the shorter part.
 constexpr double agreement = 1e-10;
-/// Of all: what m2 - L² m0 and quadratures leave of roundoff.
+/// Relative to the total: roundoff of m2 - L² m0 and of quadratures.
 constexpr double rounding = 1e-14;
-/// A jump of the density is a kink of T'; its piece is wrong by its width squared. This is narrower than any.
+/// A jump of the density is a kink of T'; the error of its piece is its width squared, and this width is
+/// small enough.
 constexpr int most_halvings = 45;
-/// A distribution that is nothing but kinks ends here, less precise.
+/// Limit for distributions with kinks everywhere, which are less precise.
 constexpr std::size_t most_pieces = 1 << 17;
 
 /// Value and derivative of Σ terms[k] s^k.
@@ -29,8 +30,8 @@ struct Polynomial {
   }
 };
 
-/// s in [-1, 1] where the falling polynomial is `target`: Newton's method from `s`, halving where it leaves
-/// the bracket. `slope` receives the last derivative.
+/// s in [-1, 1] at which the decreasing polynomial is `target`: Newton's method from `s`, with bisection if
+/// it leaves the bracket. `slope` receives the last derivative.
 double root(const std::array<double, 6>& terms, double target, double s, double& slope) {
   double low = -1, high = 1;
   for (int step = 0; step < 60; ++step) {
@@ -40,7 +41,8 @@ double root(const std::array<double, 6>& terms, double target, double s, double&
     const double excess = p.value - target;
     (excess > 0 ? low : high) = s;
     const double better = s - excess / p.slope;
-    if (std::abs(better - s) < 1e-6) return std::clamp(better, -1.0, 1.0);  // the next would be below 1e-12
+    // The next step would be below 1e-12.
+    if (std::abs(better - s) < 1e-6) return std::clamp(better, -1.0, 1.0);
     s = better;
   }
   return s;
@@ -102,11 +104,11 @@ ChordTable::ChordTable(const SizeDistribution& sizes, int most) : sizes_(&sizes)
   }
   const std::vector<double> atoms = sizes.atoms();
   auto atom = std::upper_bound(atoms.begin(), atoms.end(), from);
-  // T is smooth between classes; on an octave a power of L is nearly a polynomial.
+  // T is smooth between classes; over an octave a power of L is nearly a polynomial.
   for (Knot a = knot(from); a.length < sizes.max() && a.tail > shortest;) {
     double to = std::min(2 * a.length, sizes.max());
     if (atom != atoms.end() && *atom <= to) to = *atom++;
-    const Knot b = knot(std::nextafter(to, 0.0));  // before a class ends at `to`
+    const Knot b = knot(std::nextafter(to, 0.0));  // excludes a class at `to`
     const double m0 = -0.5 * a.slope / a.length;
     if (m0 == -0.5 * b.slope / b.length)
       pieces_.push_back({a.length, to, a.tail, b.tail, m0, {}});
@@ -120,7 +122,7 @@ ChordTable::ChordTable(const SizeDistribution& sizes, const ChordTable& pieces_o
     : sizes_(&sizes), all_(sizes.moment(2)) {
   pieces_.reserve(pieces_of.pieces_.size());
   for (const Piece& piece : pieces_of.pieces_) {
-    const Knot b = knot(std::nextafter(piece.b, 0.0));  // before a class ends there
+    const Knot b = knot(std::nextafter(piece.b, 0.0));  // excludes a class there
     if (piece.m0 > 0) {
       const double tail = piece.a > 0 ? knot(piece.a).tail : all_;
       pieces_.push_back({piece.a, piece.b, tail, b.tail, -0.5 * b.slope / b.length, {}});

@@ -9,7 +9,7 @@
 namespace bernal::predict {
 namespace {
 
-/// Of the rods' number; what is beyond it does not count as density.
+/// Largest error from the number of rods that may count as density.
 constexpr double tolerated_error = 1e-4;
 
 }  // namespace
@@ -73,7 +73,7 @@ std::unique_ptr<SizeDistribution> mixture_of(std::span<const double> radii, std:
   return make_classes(std::move(of), std::move(amounts), Basis::volume);
 }
 
-void tell_certainty(Optimum& optimum, std::span<const double> ends, double same) {
+void set_certainty(Optimum& optimum, std::span<const double> ends, double same) {
   const auto [worst, best] = std::ranges::minmax(ends);
   optimum.starts = static_cast<int>(ends.size());
   optimum.agreeing = static_cast<int>(
@@ -97,7 +97,7 @@ void require_limits(double min, double max, int rods) {
 
 int few_rods(int rods) { return std::min(rods, std::max(1000, rods / 4)); }
 
-double Inquiry::phi(const SizeDistribution& sizes, int rods) {
+double Evaluator::phi(const SizeDistribution& sizes, int rods) {
   report();
   ++evaluations;
   const Prediction p = predict_packing_fraction(sizes, rods);
@@ -105,12 +105,12 @@ double Inquiry::phi(const SizeDistribution& sizes, int rods) {
   return p.phi - std::max(0.0, p.error - tolerated_error);
 }
 
-bool Inquiry::stopped() {
+bool Evaluator::stopped() {
   stopped_ = stopped_ || monitor_.stop();
   return stopped_;
 }
 
-void Inquiry::report() {
+void Evaluator::report() {
   const auto now = std::chrono::steady_clock::now();
   if (!monitor_.on_progress || now - reported_ < std::chrono::milliseconds(50)) return;
   reported_ = now;

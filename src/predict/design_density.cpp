@@ -11,11 +11,12 @@
 namespace bernal {
 namespace {
 
-/// That stand for all bins in the search: a bin of one class is 0.001 off, 128 in all 1e-4 or less.
+/// Classes that represent all bins in the search: with one class a bin the error is 0.001, with 128 in all at
+/// most 1e-4.
 constexpr int classes_in_search = 128;
-/// Starts that end this near to the best found the same, as far as classes can stand for bins.
+/// Starts that end this close to the best found the same density, as far as classes can represent bins.
 constexpr double same_for_classes = 1e-4;
-/// Of the volume: the first amount moved from bin to bin, and the last.
+/// Shares of the volume: the first amount moved between bins, and the last.
 constexpr double first_amount = 0.08, last_amount = 5e-4;
 
 using Shares = std::vector<double>;
@@ -31,7 +32,7 @@ class DensitySearch {
     const Shares peaks = spread_peaks(most_bins);
     Shares best;
     for (int bins = 2; bins <= most_bins; bins *= 2) {
-      inquiry_.activity = std::to_string(bins) + " bins";
+      evaluator_.activity = std::to_string(bins) + " bins";
       std::vector<Shares> starts = {power_law(q, bins), gathered(peaks, bins),
                                     Shares(static_cast<std::size_t>(bins), 1.0 / bins)};
       if (!best.empty()) starts.push_back(split(best));
@@ -44,16 +45,16 @@ class DensitySearch {
           densest = end;
           best = from;
         }
-        inquiry_.fraction = std::min(1.0, inquiry_.fraction + 0.7 * bins / (8.0 * most_bins));
+        evaluator_.fraction = std::min(1.0, evaluator_.fraction + 0.7 * bins / (8.0 * most_bins));
       }
-      predict::tell_certainty(answer.optimum, ends, same_for_classes);
+      predict::set_certainty(answer.optimum, ends, same_for_classes);
       answer.optimum.prediction = predict_packing_fraction(*sieve(best), options_.rods);
       answer.levels.push_back({bins, answer.optimum.prediction.phi});
     }
     answer.radii = edges(most_bins);
     answer.optimum.shares = best;
-    answer.optimum.evaluations = inquiry_.evaluations;
-    answer.optimum.cancelled = inquiry_.stopped();
+    answer.optimum.evaluations = evaluator_.evaluations;
+    answer.optimum.cancelled = evaluator_.stopped();
     return answer;
   }
 
@@ -83,14 +84,14 @@ class DensitySearch {
         radii.push_back(radius((k + (i + 0.5) / each) / bins));
         amounts.push_back(shares[static_cast<std::size_t>(k)] / each);
       }
-    return inquiry_.phi(*make_classes(std::move(radii), std::move(amounts), Basis::volume), rods());
+    return evaluator_.phi(*make_classes(std::move(radii), std::move(amounts), Basis::volume), rods());
   }
 
-  /// Moves volume from bin to bin as long as that gains, then smaller amounts.
+  /// Moves volume between bins as long as that gains, then smaller amounts.
   double settle(Shares& shares) {
     double best = phi(shares);
     for (double amount = first_amount; amount > last_amount; amount /= 2)
-      for (bool gains = true; gains && !inquiry_.stopped();) {
+      for (bool gains = true; gains && !evaluator_.stopped();) {
         gains = false;
         for (std::size_t from = 0; from < shares.size(); ++from)
           for (std::size_t to = 0; to < shares.size() && shares[from] > 0; ++to) {
@@ -108,7 +109,7 @@ class DensitySearch {
     return best;
   }
 
-  /// Of each half bin what makes the same density.
+  /// The same density with half the bin width.
   static Shares split(const Shares& shares) {
     Shares halves;
     for (const double share : shares) halves.insert(halves.end(), 2, 0.5 * share);
@@ -121,18 +122,18 @@ class DensitySearch {
     return coarse;
   }
 
-  /// Where the densest four sizes lie.
+  /// The densest four sizes as peaks.
   Shares spread_peaks(int bins) {
     SearchOptions options;
     options.rods =
         std::min(options_.rods, std::max(options_.rods / 4, static_cast<int>(17 * std::exp(width_))));
-    options.monitor.cancelled = [this] { return inquiry_.stopped(); };
+    options.monitor.cancelled = [this] { return evaluator_.stopped(); };
     options.monitor.on_progress = [this](Progress progress) {
       progress.fraction *= 0.3;
       options_.monitor.report(progress);
     };
     const DensestSizes few = densest_sizes(min_, max_, 4, options);
-    inquiry_.fraction = 0.3;
+    evaluator_.fraction = 0.3;
     Shares shares(static_cast<std::size_t>(bins), 0.0);
     for (std::size_t k = 0; k < few.radii.size(); ++k) {
       const double along = std::log(few.radii[k] / min_) / width_;
@@ -151,9 +152,9 @@ class DensitySearch {
   }
 
   double best_power_law(DensestDensity& answer) {
-    inquiry_.activity = "power laws";
+    evaluator_.activity = "power laws";
     const auto loose = [&](double q) {
-      return -inquiry_.phi(*make_fuller(max_, q, min_), predict::few_rods(options_.rods));
+      return -evaluator_.phi(*make_fuller(max_, q, min_), predict::few_rods(options_.rods));
     };
     std::uintmax_t most = 40;
     answer.power_law_exponent = boost::math::tools::brent_find_minima(loose, 0.01, 3.0, 20, most).first;
@@ -164,7 +165,7 @@ class DensitySearch {
 
   double min_, max_, width_;
   const SearchOptions& options_;
-  predict::Inquiry inquiry_{options_.monitor};
+  predict::Evaluator evaluator_{options_.monitor};
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace bernal {
 namespace {
 
 constexpr int steps = 32;
-/// Of the packing fraction: beyond it what was bracketed is a jump, not a root.
+/// Accuracy of the packing fraction: a bracket that does not close to this is a jump, not a root.
 constexpr double precision = 1e-7;
 
 struct Point {
@@ -29,7 +29,7 @@ class Matching {
       points.push_back(at(k == steps ? to : from + k * ((to - from) / steps)));
       if (k > 0 && close(points[points.size() - 2], points.back())) return match_;
     }
-    // A hump or a hollow between two steps may reach farther than they do.
+    // A maximum or minimum between two steps may reach beyond them.
     for (const double sign : {1.0, -1.0}) {
       std::size_t best = 0;
       for (std::size_t k = 1; k < points.size(); ++k)
@@ -56,7 +56,7 @@ class Matching {
     return {parameter, phi};
   }
 
-  /// Whether the target lies between the two and was found there.
+  /// Whether the target lies between the two points and was found there.
   bool close(const Point& a, const Point& b) {
     if ((a.phi - target_) * (b.phi - target_) > 0) return false;
     Point best = std::abs(a.phi - target_) <= std::abs(b.phi - target_) ? a : b;

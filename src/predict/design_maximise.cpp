@@ -32,30 +32,31 @@ class Search {
     std::vector<predict::Place> ends;
     const int rods = predict::few_rods(options_.rods);
     for (const std::vector<double>& from : starts) {
-      inquiry_.fraction = static_cast<double>(ends.size()) / static_cast<double>(starts.size() + 1);
-      inquiry_.activity = "start " + std::to_string(ends.size() + 1) + " of " + std::to_string(starts.size());
+      evaluator_.fraction = static_cast<double>(ends.size()) / static_cast<double>(starts.size() + 1);
+      evaluator_.activity =
+          "start " + std::to_string(ends.size() + 1) + " of " + std::to_string(starts.size());
       ends.push_back(settled({from, value(from, rods)}, 0.2, 1e-6, rods));
-      if (inquiry_.stopped()) break;
+      if (evaluator_.stopped()) break;
     }
     std::ranges::stable_sort(ends, std::greater(), &predict::Place::value);
     Optimum optimum;
     std::vector<double> values;
     for (const predict::Place& end : ends) values.push_back(end.value);
-    predict::tell_certainty(optimum, values, predict::same_end);
+    predict::set_certainty(optimum, values, predict::same_end);
     optimum.shares = refined(ends);
     optimum.prediction = predict_packing_fraction(*mixture_(optimum.shares), options_.rods);
-    optimum.evaluations = inquiry_.evaluations + 1;
-    optimum.cancelled = inquiry_.stopped();
+    optimum.evaluations = evaluator_.evaluations + 1;
+    optimum.cancelled = evaluator_.stopped();
     return optimum;
   }
 
  private:
-  /// The best with all rods: of the best few, for which is best can depend on their number.
+  /// The best of a few ends with all rods, because the number of rods can change which is best.
   std::vector<double> refined(const std::vector<predict::Place>& ends) {
-    inquiry_.activity = "refining";
+    evaluator_.activity = "refining";
     predict::Place best{ends.front().x, -1};
     for (const predict::Place& end : ends | std::views::take(predict::ends_to_refine)) {
-      if (end.value < ends.front().value - 1e-3 || inquiry_.stopped()) continue;
+      if (end.value < ends.front().value - 1e-3 || evaluator_.stopped()) continue;
       const predict::Place fine = settled({end.x, value(end.x, options_.rods)}, 0.01, 1e-7, options_.rods);
       if (fine.value > best.value) best = fine;
     }
@@ -63,7 +64,7 @@ class Search {
     return best.x;
   }
 
-  /// A population that next to nothing is left of, and that nothing is lost without, is not there.
+  /// Drops a population with a negligible share if that does not lower the packing fraction.
   void leave_out_idle(predict::Place& best) {
     for (std::size_t k = 0; k < best.x.size(); ++k) {
       if (best.x[k] == 0 || best.x[k] > 1e-3) continue;
@@ -75,17 +76,17 @@ class Search {
     }
   }
 
-  /// Climbs until neither of two climbs, one along either cut of the simplex, gains: at a kink or a face one
-  /// simplex of Nelder and Mead can shrink where another does not.
+  /// Climbs until two climbs in a row, one along either parametrisation of the simplex, gain nothing: at a
+  /// kink or a face one Nelder-Mead simplex can shrink where the other does not.
   predict::Place settled(predict::Place best, double step, double tolerance, int rods) {
     int idle = 0;
-    for (bool backward = false; idle < 2 && !inquiry_.stopped(); backward = !backward) {
+    for (bool backward = false; idle < 2 && !evaluator_.stopped(); backward = !backward) {
       const predict::Objective phi = [&](std::span<const double> u) {
         return value(predict::shares_at(u, backward), rods);
       };
       const predict::Place end =
           predict::climb(phi, predict::place_of(best.x, backward), {step, 0.1 * tolerance, most_evaluations},
-                         [this] { return inquiry_.stopped(); });
+                         [this] { return evaluator_.stopped(); });
       const double gain = end.value - best.value;
       if (gain > 0) best = {predict::shares_at(end.x, backward), end.value};
       idle = gain > tolerance ? 0 : idle + 1;
@@ -94,12 +95,14 @@ class Search {
     return best;
   }
 
-  double value(const std::vector<double>& shares, int rods) { return inquiry_.phi(*mixture_(shares), rods); }
+  double value(const std::vector<double>& shares, int rods) {
+    return evaluator_.phi(*mixture_(shares), rods);
+  }
 
   const MixtureOf& mixture_;
   int populations_;
   const SearchOptions& options_;
-  predict::Inquiry inquiry_{options_.monitor};
+  predict::Evaluator evaluator_{options_.monitor};
 };
 
 void require(bool holds, const std::string& message) {
@@ -128,7 +131,7 @@ Optimum maximise_packing_fraction(std::span<const double> radii, const SearchOpt
   require(std::ranges::all_of(radii, [](double r) { return r > 0 && std::isfinite(r); }),
           "sizes must be positive and finite");
   require(!radii.empty(), "a composition is searched for of 2 to 6 populations, not of 0");
-  // In one order and to one scale, whatever the caller's: the largest first.
+  // In a fixed order and scale: the largest first.
   std::vector<std::size_t> order(radii.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return radii[i]; });

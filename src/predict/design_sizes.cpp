@@ -13,7 +13,7 @@ namespace {
 constexpr int starts = 9;
 constexpr int most_evaluations_of_sizes = 4000;
 
-/// Places are u: count - 1 of the composition, then count - 2 positions between the ends.
+/// Points are u: count - 1 for the composition, then count - 2 positions between the ends.
 class SizesSearch {
  public:
   SizesSearch(double min, double max, int count, const SearchOptions& options)
@@ -22,9 +22,9 @@ class SizesSearch {
   DensestSizes run() {
     const int rods = predict::few_rods(options_.rods);
     std::vector<predict::Place> ends;
-    for (int k = 0; k < starts && !inquiry_.stopped(); ++k) {
-      inquiry_.fraction = static_cast<double>(k) / (starts + 1);
-      inquiry_.activity = std::to_string(count_) + " sizes";
+    for (int k = 0; k < starts && !evaluator_.stopped(); ++k) {
+      evaluator_.fraction = static_cast<double>(k) / (starts + 1);
+      evaluator_.activity = std::to_string(count_) + " sizes";
       ends.push_back(settled(start(k), 0.1, 1e-6, rods));
     }
     if (ends.empty()) ends.push_back({start(0), 0});
@@ -34,21 +34,21 @@ class SizesSearch {
     predict::Place best = ends.front();
     best.value = -1;
     for (std::size_t k = 0;
-         k < std::min<std::size_t>(predict::ends_to_refine, ends.size()) && !inquiry_.stopped(); ++k) {
+         k < std::min<std::size_t>(predict::ends_to_refine, ends.size()) && !evaluator_.stopped(); ++k) {
       const predict::Place fine = settled(ends[k].x, 0.01, 1e-7, options_.rods);
       if (fine.value > best.value) best = fine;
     }
 
     DensestSizes answer = at(best.x);
-    predict::tell_certainty(answer.optimum, values, predict::same_end);
+    predict::set_certainty(answer.optimum, values, predict::same_end);
     answer.optimum.prediction = predict_packing_fraction(*mixture(best.x), options_.rods);
-    answer.optimum.evaluations = inquiry_.evaluations + 1;
-    answer.optimum.cancelled = inquiry_.stopped();
+    answer.optimum.evaluations = evaluator_.evaluations + 1;
+    answer.optimum.cancelled = evaluator_.stopped();
     return answer;
   }
 
  private:
-  /// Even positions with a third as much of each size as of the next larger; others spread evenly.
+  /// Even positions, each size with a third of the volume of the next larger; other starts are spread evenly.
   std::vector<double> start(int k) const {
     const auto n = static_cast<int>(count_);
     if (k > 0) return predict::even_point(k, 2 * n - 3);
@@ -80,15 +80,17 @@ class SizesSearch {
     return predict::mixture_of(of.radii, of.optimum.shares);
   }
 
-  /// Climbs again from where it ended until that gains nothing twice.
+  /// Climbs again from its end until that gains nothing twice.
   predict::Place settled(const std::vector<double>& from, double step, double tolerance, int rods) {
-    const predict::Objective phi = [&](std::span<const double> u) { return inquiry_.phi(*mixture(u), rods); };
+    const predict::Objective phi = [&](std::span<const double> u) {
+      return evaluator_.phi(*mixture(u), rods);
+    };
     predict::Place best{from, phi(from)};
-    for (int idle = 0; idle < 2 && !inquiry_.stopped();
+    for (int idle = 0; idle < 2 && !evaluator_.stopped();
          step = idle == 1 ? 0.05 : std::max(0.5 * step, 0.005)) {
       const predict::Place end =
           predict::climb(phi, best.x, {step, 0.1 * tolerance, most_evaluations_of_sizes},
-                         [this] { return inquiry_.stopped(); });
+                         [this] { return evaluator_.stopped(); });
       idle = end.value > best.value + tolerance ? 0 : idle + 1;
       if (end.value > best.value) best = end;
     }
@@ -98,7 +100,7 @@ class SizesSearch {
   double min_, max_;
   std::size_t count_;
   const SearchOptions& options_;
-  predict::Inquiry inquiry_{options_.monitor};
+  predict::Evaluator evaluator_{options_.monitor};
 };
 
 }  // namespace

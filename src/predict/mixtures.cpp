@@ -12,7 +12,7 @@
 namespace bernal {
 namespace {
 
-/// Of a given volume-weighted mean, which is e^(sigma²/2) times the median by volume.
+/// With a given volume-weighted mean, which is e^(sigma²/2) times the median by volume.
 std::unique_ptr<SizeDistribution> make_population(double mean, double sigma) {
   if (sigma < 1e-9) return make_constant(mean);
   return make_lognormal(mean * std::exp(-0.5 * sigma * sigma), sigma, Basis::volume, 0,
@@ -52,7 +52,7 @@ std::vector<Prediction> predict_shares(const TwoPopulations& populations, std::s
   p.share = 1;
   const std::unique_ptr<SizeDistribution> b = make_two_populations(p);
 
-  // Where one population has nearly all the volume, the other's chords are fewer by about the ratio of sizes.
+  // If one population has nearly all the volume, the other's chords are fewer by about the ratio of sizes.
   const double finer = 64 * std::max(p.ratio, 1 / p.ratio);
   const int most = static_cast<int>(std::min(1e9, finer * rods));
   const predict::ChordTable pieces(*both, most);

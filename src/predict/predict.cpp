@@ -25,8 +25,8 @@ Prediction predict::predict_from_chords(const ChordTable& chords, double mean_ch
   const std::vector<double> lengths = chords.rod_lengths(rods);
   Prediction prediction{.phi = predict::covered_fraction(lengths, gap_factor), .rods = rods};
   const double fewer = predict::covered_fraction(chords.rod_lengths(std::max(1, rods / 4)), gap_factor);
-  // What the rods fall short of the mean chord is volume of spheres so large, and so few, that no rod stands
-  // for them.
+  // The deficit of the rods' mean length from the mean chord is volume of spheres so large, and so few, that
+  // no rod represents them.
   const double mean = std::accumulate(lengths.begin(), lengths.end(), 0.0) / rods;
   const double missed = std::abs(1 - mean / mean_chord);
   prediction.error = std::max(std::abs(prediction.phi - fewer), missed * (1 - prediction.phi));
@@ -53,9 +53,9 @@ double fitted_packing_fraction(double sigma) {
 
 double relative_viscosity(double solids, double packing_fraction, double intrinsic) {
   if (!(solids >= 0 && solids < packing_fraction && packing_fraction <= 1))
-    throw Error(ErrorCode::bad_argument, "a suspension flows where its volume fraction of solids, " +
-                                             std::to_string(solids) + ", lies from 0 to below " +
-                                             std::to_string(packing_fraction) + ", where it jams");
+    throw Error(ErrorCode::bad_argument, "the volume fraction of solids must lie from 0 to below " +
+                                             std::to_string(packing_fraction) +
+                                             ", where the suspension jams, not " + std::to_string(solids));
   if (!(intrinsic > 0 && std::isfinite(intrinsic)))
     throw Error(ErrorCode::bad_argument,
                 "the intrinsic viscosity must be positive, not " + std::to_string(intrinsic));

@@ -6,8 +6,8 @@
 namespace bernal::predict {
 
 double covered_fraction(std::span<const double> lengths, double f) {
-  // A rod leaves a gap f L, never larger than those left before, so these wait in a queue that needs no
-  // sorting. Only what remains of a gap that held a rod without growing goes to a heap.
+  // A rod leaves a gap f L, never larger than earlier ones, so these wait in a queue that needs no sorting.
+  // Only the rest of a gap that held a rod without growing goes to a heap.
   std::vector<double> queue(2 * lengths.size());
   std::vector<double> heap;
   std::size_t front = 0, back = 0;

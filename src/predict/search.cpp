@@ -11,7 +11,7 @@
 namespace bernal::predict {
 namespace {
 
-/// What NLopt, a C library that no exception may cross, calls back.
+/// Callback data for NLopt, a C library that no exception may cross.
 struct Call {
   const Objective& objective;
   const std::function<bool()>& stopped;
@@ -39,7 +39,7 @@ double evaluate(unsigned n, const double* x, double*, void* data) {
 
 }  // namespace
 
-Place climb(const Objective& objective, std::vector<double> start, const Reach& reach,
+Place climb(const Objective& objective, std::vector<double> start, const SearchLimits& limits,
             const std::function<bool()>& stopped) {
   const auto n = static_cast<unsigned>(start.size());
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> search(nlopt_create(NLOPT_LN_NELDERMEAD, n),
@@ -49,13 +49,13 @@ Place climb(const Objective& objective, std::vector<double> start, const Reach& 
   nlopt_set_max_objective(search.get(), evaluate, &call);
   nlopt_set_lower_bounds1(search.get(), 0);
   nlopt_set_upper_bounds1(search.get(), 1);
-  nlopt_set_initial_step1(search.get(), reach.step);
-  nlopt_set_ftol_abs(search.get(), reach.gain);
-  nlopt_set_maxeval(search.get(), reach.most_evaluations);
+  nlopt_set_initial_step1(search.get(), limits.step);
+  nlopt_set_ftol_abs(search.get(), limits.gain);
+  nlopt_set_maxeval(search.get(), limits.most_evaluations);
   double value = 0;
   const nlopt_result result = nlopt_optimize(search.get(), start.data(), &value);
   if (call.thrown) std::rethrow_exception(call.thrown);
-  // Roundoff that limits progress leaves a maximum as good as any.
+  // A search limited by roundoff has still found a maximum.
   if (result < 0 && result != NLOPT_ROUNDOFF_LIMITED && result != NLOPT_FORCED_STOP)
     throw Error(ErrorCode::bad_argument, "the search for the densest composition cannot start");
   return call.best;

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "report/html_text.hpp"
 #include "report/plot.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 namespace {
@@ -27,15 +27,15 @@ class Chart : public Plot {
   std::string finish() && { return std::move(*this).Plot::finish() + "</svg>"; }
 };
 
-/// A point of a history, and the stage that it belongs to.
+/// A point of a history with its stage.
 struct Moment {
   double seconds, value;
   std::string_view stage;
 };
 
-/// Names the stages where they begin.
+/// Adds the names of stages at their starts.
 void add_stages(Chart& chart, const std::vector<Moment>& history) {
-  double free_from = 0;  // where the next stage name would not run into the last one
+  double free_from = 0;  // where the next stage name would not overlap the last one
   std::string_view stage;
   for (const Moment& m : history) {
     if (m.stage == stage) continue;
@@ -67,12 +67,12 @@ std::string chart_of(const std::vector<Moment>& history, double y0, double y1, s
   return std::move(chart).finish();
 }
 
-/// A value with what its error takes off it and adds to it.
+/// A value with the errors below and above it.
 struct Uncertain {
   double x, y, below, above;
 };
 
-/// A line, and the band of its error; what is beyond the axis is cut.
+/// A line with its error band, clipped to the axis.
 void add_band(Chart& chart, const std::vector<Uncertain>& points, double highest, double lowest = 0) {
   const auto append = [&](std::string& path, double x, double y) {
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', chart.x(x),
@@ -131,8 +131,7 @@ std::string size_histogram(const SizeHistogram& histogram) {
 }
 
 std::string radial_chart(const RadialDistribution& radial) {
-  // The contact peak of equal spheres is as high as the bins are narrow; what follows is what there is to
-  // see.
+  // The contact peak of equal spheres is as high as the bins are narrow; the axis is scaled to what follows.
   double highest = 3;
   std::vector<Uncertain> points;
   for (std::size_t k = 0; k < radial.g.size(); ++k) {
@@ -148,7 +147,7 @@ std::string radial_chart(const RadialDistribution& radial) {
 }
 
 std::string size_correlation_chart(const SizeCorrelation& correlation) {
-  // Where two of the smallest sizes touch, C is far larger than what there is to see.
+  // Where two of the smallest sizes touch, C is far above the range of interest.
   constexpr double highest = 0.3;
   std::vector<Uncertain> points;
   for (std::size_t k = 0; k < correlation.d.size(); ++k)
@@ -227,7 +226,7 @@ std::string local_packing_chart(const LocalPacking& local) {
     least = std::min(least, local.packing_fraction[i]);
     most = std::max(most, local.packing_fraction[i]);
   }
-  // Spheres that overlaps hide nearly have next to no cell: what is far out is left out.
+  // Spheres almost hidden by overlaps have tiny cells: outliers are left out.
   const double low = local.quantiles.front().packing_fraction, high = local.quantiles.back().packing_fraction;
   least = std::max(least, low - (high - low));
   most = std::min(most, high + (high - low));
@@ -257,8 +256,7 @@ std::string structure_chart(const StructureFactor& factor) {
   std::vector<Uncertain> points;
   for (std::size_t b = 0; b < factor.k.size(); ++b) {
     const double s = factor.s[b], error = factor.error[b];
-    highest =
-        std::max(highest, std::min(1.1 * s, 6.0));  // the peaks of crystals are as high as they are many
+    highest = std::max(highest, std::min(1.1 * s, 6.0));  // peaks of crystals grow with the number of spheres
     points.push_back({factor.k[b] * factor.mean_diameter, s, error, error});
   }
   Chart chart({0, points.back().x, "wave number (inverse mean diameters)"}, {0, highest, "S(k)"});
@@ -290,7 +288,7 @@ std::string history_chart(std::span<const Milestone> history, double Milestone::
     least = std::min(least, m.*value);
     most = std::max(most, m.*value);
   }
-  // A value that only rounding has moved is drawn as the flat line that it is.
+  // Mere rounding is drawn as a flat line.
   double room = std::max({0.08 * (most - least), 1e-3 * std::abs(least), 1e-3 * std::abs(most)});
   if (!(room > 0)) room = 1;
   return chart_of(moments, least - room, most + room, label, Scale::linear);

@@ -24,7 +24,7 @@ std::string describe_container(const Plan& plan) {
                      volume_of(plan.domain), unit, size.size());
 }
 
-/// "lammps.data, for lammps, in m"; precondition: it is complete.
+/// "lammps.data, for lammps, in m"; precondition: the output is complete.
 std::string describe_output(const Output& output) {
   return fmt::format("{}, for {}, in {}", plain_text(output.file.string()), output.format,
                      name_of(output.unit.value_or(Unit::m)));

@@ -5,8 +5,8 @@
 
 namespace bernal {
 
-/// "diameter in mm: lognormal, basis number, median 1, sigma 0.3": what was understood, with the unit and
-/// with the word radius or diameter, which users mix up.
+/// "diameter in mm: lognormal, basis number, median 1, sigma 0.3": the sizes with their unit and the word
+/// radius or diameter, which are easily confused.
 std::string describe_sizes(const Scene& scene);
 
 /// "as many as fit", "10,000", "up to packing fraction 0.45".

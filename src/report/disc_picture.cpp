@@ -6,17 +6,17 @@
 
 #include <fmt/format.h>
 
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace {
 
-constexpr double farthest_out = 0.06;  // of the canvas, for what sticks out of the outline
+constexpr double farthest_out = 0.06;  // of the canvas, for discs beyond the outline
 constexpr double caption_height = 36;
 
 std::string flat_fill(int colour_class) { return size_colour((colour_class + 0.5) / colour_classes).text(); }
 
-/// One group a colour class: the discs' own tags stay short.
+/// One group a colour class keeps the tags of discs short.
 using ByColour = std::array<std::vector<Disc>, colour_classes>;
 
 void append_discs(std::string& out, const ByColour& discs, double rim) {
@@ -38,12 +38,12 @@ void append_discs(std::string& out, const ByColour& discs, double rim) {
 std::string svg_of(const DiscPicture& picture, const SizeScale& sizes, std::size_t spheres,
                    std::string_view unit) {
   const Vector<2> size = picture.window.size();
-  double largest = 0;  // of those that stick out
+  double largest = 0;  // of those beyond the outline
   for (const Disc& disc : picture.discs)
     if (disc.sticks_out) largest = std::max(largest, disc.radius);
   const bool clipped = largest > 0;
   const double out_of_it = std::min(farthest_out, largest / size.maxCoeff());
-  const double beyond = out_of_it * canvas_size;  // an inner picture cuts off what reaches farther
+  const double beyond = out_of_it * canvas_size;  // an inner picture clips what extends farther
   const double border = beyond + canvas_margin;
   const double scale = (canvas_size - 2 * border) / size.maxCoeff();
   const double top = border + (picture.caption.empty() ? 0 : caption_height);

@@ -8,25 +8,24 @@
 
 namespace bernal {
 
-/// A disc as it is drawn, in the scene's lengths, the second axis pointing up; its colour is that of
-/// `sphere_radius`.
+/// A disc of a picture, in the scene's lengths, with the second axis upwards; coloured by `sphere_radius`.
 struct Disc {
   Vector<2> center;
   double radius;
   double sphere_radius;
-  bool sticks_out = false;  ///< of the outline: is cut off there and drawn faintly beyond
+  bool sticks_out = false;  ///< beyond the outline, where it is drawn faintly
 };
 
-/// A closed line through these points.
+/// A closed polyline.
 using Loop = std::vector<Vector<2>>;
 
-/// Discs and the outline around them: a packing of two dimensions, or a section of one of three.
+/// Discs and the outline around them: a packing of two dimensions, or a section of three.
 struct DiscPicture {
   std::vector<Disc> discs;
-  std::vector<Loop> outline;  ///< what is inside by the even-odd rule
-  Bounds<2> window;           ///< what is shown, of positive size
-  std::string caption = {};   ///< stands above, if there is one
-  std::string remark = {};    ///< stands below, between the scale bar and the key
+  std::vector<Loop> outline;  ///< the inside is by the even-odd rule
+  Bounds<2> window;           ///< the visible part, of positive size
+  std::string caption = {};   ///< above the picture, if not empty
+  std::string remark = {};    ///< below it, between the scale bar and the key
 };
 
 /// As `svg_of`: transparent background, middle greys, a scale bar and a key. Cost: O(discs + points).

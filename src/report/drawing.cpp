@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal::drawing {
 namespace {
@@ -33,7 +33,7 @@ void add_disc(Plot& plot, double x, double y) {
 }
 
 std::string_view series_colour(std::size_t k) {
-  // Okabe & Ito's, but for yellow, which is none on white.
+  // The palette of Okabe & Ito without yellow, which is invisible on white.
   constexpr std::array<std::string_view, 6> colours = {"#0072b2", "#d55e00", "#009e73",
                                                        "#cc79a7", "#56b4e9", "#e69f00"};
   return colours[k % colours.size()];

@@ -11,7 +11,7 @@
 namespace bernal {
 namespace {
 
-/// To two digits: what is expected is no better known.
+/// To two digits, the precision of the estimate.
 std::string duration_in_words(double seconds) {
   const auto two_digits = [](double x, const char* unit) {
     return x < 9.95 ? fmt::format("{:.1f} {}", x, unit)
@@ -28,7 +28,7 @@ std::string bytes_in_words(double bytes) {
   return fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
-/// Words in lines of at most 100 columns, so many blanks before each.
+/// Wraps text into lines of at most 100 columns, each indented by `blanks`.
 std::string in_lines(const std::string& words, std::size_t blanks) {
   constexpr std::size_t longest = 100;
   std::istringstream all(words);
@@ -43,7 +43,7 @@ std::string in_lines(const std::string& words, std::size_t blanks) {
   return text + line + '\n';
 }
 
-/// Two lines an effect: its name and price; what it is. Times within others stand in brackets.
+/// Two lines an effect: name and price; explanation. Times included in others are in brackets.
 std::string effects_in_words(const Plan& plan) {
   std::string text =
       fmt::format("What would run:\n  {:<16}  {:>10}  {:>7}  {}\n", "effect", "time", "memory", "cost");

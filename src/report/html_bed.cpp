@@ -1,12 +1,12 @@
-// How high and how porous a bed is, and whether it rests.
+// Height and porosity of a bed, and whether it rests.
 #include <string>
 
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
-#include "report/html_text.hpp"
 #include "report/page.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 namespace {
@@ -38,7 +38,7 @@ std::string below_level(const Report& report) {
                      escaped(name_of(report.packing.scene.unit)));
 }
 
-std::string rest_in_short(const Rest& rest) {
+std::string short_rest_text(const Rest& rest) {
   if (rest.unsettled == 0 && rest.held_by_friction > 0)
     return fmt::format("every sphere rests, {} by friction", grouped(rest.held_by_friction));
   return rest.unsettled == 0 ? "every sphere rests"

@@ -5,8 +5,8 @@
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
-#include "report/html_text.hpp"
 #include "report/page.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 namespace {

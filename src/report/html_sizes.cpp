@@ -6,13 +6,13 @@
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
-#include "report/html_text.hpp"
 #include "report/page.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 namespace {
 
-/// Radii or diameters, whichever word the scene used; in ascending order.
+/// Radii or diameters, as in the scene; ascending.
 struct Sizes {
   std::vector<double> values;
   std::string_view word;
@@ -36,7 +36,7 @@ std::string asked_text(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "no limit";
 }
 
-/// The size below which a share of the number and of the volume of the spheres lies.
+/// The size below which a share of the number and of the volume lies.
 void write_quantiles(Page& page, const Sizes& sizes, const SizeDistribution* asked) {
   std::vector<double> volume_below;  // in units of the largest sphere
   double sum = 0;
@@ -96,7 +96,7 @@ void write_classes(Page& page, const Sizes& sizes, const std::map<double, std::u
   page.raw("</table>\n");
 }
 
-/// Of tenths of the volume: what came of the shares that were asked for.
+/// By tenths of the volume: requested and realised shares.
 void write_shares(Page& page, const Sizes& sizes, const std::vector<SizeComparison::Share>& shares) {
   page.add(
       "<table><tr><th>{} up to</th><th class=\"n\">spheres</th><th class=\"n\">% of the number</th>"

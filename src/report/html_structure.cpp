@@ -1,4 +1,4 @@
-// How dense single spheres are packed, how waves are scattered, how large the pores are.
+// Local packing fractions, structure factor, pore sizes.
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -8,8 +8,8 @@
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
-#include "report/html_text.hpp"
 #include "report/page.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 namespace {
@@ -80,8 +80,8 @@ void write_pore_sizes(Page& page, const PoreSizes& pores, std::string_view unit,
 
 }  // namespace
 
-/// Of very many spheres, and of those of a run that was stopped, not all is measured at once.
-void write_what_is_left(Page& page, const Report& report) {
+/// Measurements left out for very many spheres and for stopped runs.
+void write_omissions(Page& page, const Report& report) {
   const Measurements& measured = report.measured;
   const int dimension = report.packing.spheres.dimension();
   if (report.packing.spheres.empty() || dimension < 2 || dimension > 3) return;
@@ -104,7 +104,7 @@ void write_structure(Page& page, const Report& report) {
     write_pore_sizes(page, *measured.pores, escaped(name_of(report.packing.scene.unit)),
                      has_walls(report.packing.domain), below_level(report));
   if (measured.structure) write_structure_factor(page, *measured.structure);
-  write_what_is_left(page, report);
+  write_omissions(page, report);
 }
 
 }  // namespace bernal

@@ -1,4 +1,4 @@
-// report.json and what --json prints.
+// report.json and the output of --json.
 #include "bernal/report/json.hpp"
 
 #include <sys/resource.h>
@@ -15,7 +15,7 @@ BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
 
-/// What is only counted took a part of another effect's time.
+/// An effect that is only counted is timed within another.
 static void to_json(Json& json, const Effect& effect) {
   json = {{"name", effect.name}, {"calls", effect.calls}, {"seconds", effect.seconds}};
   if (effect.calls > 0 && effect.seconds == 0) json["seconds"] = nullptr;
@@ -72,7 +72,7 @@ std::map<std::string, std::string> manifest_in(const std::string& report) {
   const Json json = Json::parse(report, nullptr, false);
   std::map<std::string, std::string> files;
   if (!json.is_object() || !json.contains("certificate") || !json.contains("hash")) return files;
-  if (!json.contains("files"))  // as bernal 0.1 wrote it at first
+  if (!json.contains("files"))  // an early format of version 0.1
     return {{"spheres.csv", ""}, {"spheres.vtp", ""}, {"scene.toml", ""},   {"report.json", ""},
             {"report.html", ""}, {"packing.svg", ""}, {"container.off", ""}};
   for (const auto& [name, sha256] : json.at("files").items())
@@ -113,7 +113,7 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
           {"size_scale", packing.size_scale}};
 }
 
-/// What comes behind all that is measured, of either kind of report.
+/// The part after the measurements, common to both kinds of report.
 template <class AnyReport>
 void add_proof(Json& json, const AnyReport& report) {
   const Packing& packing = report.packing;
@@ -141,7 +141,7 @@ void add_proof(Json& json, const AnyReport& report) {
     json["container"].update({{"file", mesh->file.filename().string()}, {"sha256", mesh->sha256}});
 }
 
-/// With a last key that tells whether anybody has changed any of the others.
+/// Adds a seal as the last key, which shows later changes to the others.
 std::string sealed_text_of(const Json& json) {
   constexpr std::string_view end = "\n}\n";
   std::string text = text_of(json);

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 
@@ -63,7 +63,7 @@ void append_legend(std::string& out, const Canvas& canvas, const SizeScale& size
     out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g} {}</text>\n",
                        canvas.width - canvas_margin, y + 6, sizes.smallest(), unit);
   } else if (!sizes.empty()) {
-    const auto size = [&](double r) {  // with as many digits as tell the two apart
+    const auto size = [&](double r) {  // with enough digits to distinguish the two
       const bool same = fmt::format("{:.3g}", sizes.smallest()) == fmt::format("{:.3g}", sizes.largest());
       return fmt::format("{:.{}g}", r, same ? 5 : 3);
     };

@@ -6,17 +6,16 @@
 
 namespace bernal {
 
-// What all pictures of packings share: the canvas, the colours of sizes, the line below.
+// Common to all pictures of packings: the canvas, the colours of sizes, the legend.
 
 inline constexpr double canvas_size = 1000;
-inline constexpr double narrowest_canvas = 480;  ///< so much the legend needs
+inline constexpr double narrowest_canvas = 480;  ///< needed by the legend
 inline constexpr double canvas_margin = 12;
 inline constexpr double legend_height = 52;
 inline constexpr std::string_view line_grey = "#8590a0";
 inline constexpr int colour_classes = 9;
 
-/// Maps radii to colour classes, evenly in ln r between the least and the greatest of them, which the key
-/// names.
+/// Maps radii to colour classes, evenly in ln r between the smallest and the largest.
 class SizeScale {
  public:
   explicit SizeScale(const std::vector<double>& radii);
@@ -34,14 +33,14 @@ class SizeScale {
 };
 
 struct Canvas {
-  double width, height;  ///< without the legend, which stands below
+  double width, height;  ///< without the legend below
   double scale;          ///< canvas units per unit of length
 };
 
-/// The opening tag, with room for the legend.
+/// The opening tag of an SVG with a legend.
 std::string svg_head(double width, double height, std::size_t spheres);
 
-/// A line of words, around that point.
+/// A line of text centred at the point.
 void append_words(std::string& out, double x, double y, double size, std::string_view words);
 
 /// A scale bar and the key of the sizes; `fill` paints a colour class.

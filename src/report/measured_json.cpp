@@ -59,7 +59,7 @@ static void to_json(Json& json, const Contacts& contacts) {
             {"isostatic_contacts", contacts.isostatic}}}};
 }
 
-/// A count of rattlers stands only where it says something.
+/// Rattlers only if their number is meaningful.
 static Json contacts_json(const Measurements& measured, const Contacts& contacts) {
   Json json = contacts;
   if (!measured.holds(contacts)) json["rattlers"] = nullptr;
@@ -140,7 +140,7 @@ static void to_json(Json& json, const RadialDistribution& radial) {
           {"error", radial.error}};
 }
 
-/// Without what every single sphere has.
+/// Without per-sphere data.
 static void to_json(Json& json, const LocalPacking& local) {
   json = {{"mean", local.mean},
           {"mean_error", local.mean_error},
@@ -150,7 +150,7 @@ static void to_json(Json& json, const LocalPacking& local) {
           {"looked_at", local.cell_volume.size()},
           {"empty_cells", local.empty},
           {"volume", local.volume},
-          {"volume_error", local.volume_error}};  // null where it is no number
+          {"volume_error", local.volume_error}};  // null if NaN
 }
 
 /// Without the values at all wave numbers.
@@ -195,7 +195,7 @@ static void to_json(Json& json, const SizeComparison& sizes) {
 
 namespace {
 
-/// The figures; the tables are in the answer of `bernal measure`.
+/// The figures without the tables, which `bernal measure` returns.
 Json figures_of(const std::optional<SizeComparison>& sizes) {
   if (!sizes) return {};
   return {{"ks_statistic", sizes->ks_statistic},

@@ -7,7 +7,7 @@
 #include "bernal/domain/domain.hpp"
 #include "bernal/measure/measure.hpp"
 
-// What reports and measurements have in common as JSON; for the files of this room that write it.
+// JSON common to reports and measurements, for this room's writers.
 
 using Json = nlohmann::ordered_json;  // writes NaN and infinity as null
 
@@ -16,7 +16,7 @@ struct nlohmann::adl_serializer<std::optional<T>> {
   static void to_json(Json& json, const std::optional<T>& value) { json = value ? Json(*value) : Json(); }
 };
 
-/// Makes members of a struct keys of their own names. (Those of nlohmann know no ordered_json.)
+/// Writes members of a struct under their own names. (nlohmann's macros do not support ordered_json.)
 #define BERNAL_KEYS(Type, ...)                                               \
   static void to_json(Json& nlohmann_json_j, const Type& nlohmann_json_t) {  \
     NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(NLOHMANN_JSON_TO, __VA_ARGS__)) \
@@ -24,17 +24,15 @@ struct nlohmann::adl_serializer<std::optional<T>> {
 
 namespace bernal {
 
-/// The key `box` with edges, axes that have walls and volume of a box that repeats itself or has not three
-/// dimensions; or `container` with kind, volume and bounds, and the periods of one that repeats itself, 0
-/// along open axes.
+/// The key `box` with edges, walled axes and volume, for a periodic box or one of other than three
+/// dimensions; else `container` with kind, volume and bounds, and the periods if there are any, 0 along open
+/// axes.
 Json::object_t::value_type domain_json(const Domain&);
 
-/// Of report.json: contacts, then the figures of all that is measured; the tables are in the answer of
-/// `bernal measure`.
+/// For report.json: contacts, then the figures of all measurements; `bernal measure` returns the tables.
 Json measured_figures(const Measurements&);
 
-/// Two spaces a level. Names may hold any bytes; a report that is not valid UTF-8 would be worse than a
-/// replaced character.
+/// Indented by two spaces a level. Invalid UTF-8, which names may contain, is replaced.
 std::string text_of(const Json&);
 
 }  // namespace bernal

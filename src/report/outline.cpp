@@ -14,7 +14,7 @@ namespace bernal {
 namespace {
 
 constexpr std::uint32_t rim_points = 180;
-constexpr std::size_t most_edges = 20'000;  // beyond, the shortest add bytes and no information
+constexpr std::size_t most_edges = 20'000;  // more would only add bytes
 
 /// Two unit vectors that complete `axis` to an orthogonal frame.
 std::array<Vector<3>, 2> across(const Vector<3>& axis) {
@@ -75,14 +75,14 @@ Mesh drawable(const Polygon&) {
   throw Error(ErrorCode::bad_argument, "a polygon lies in the plane and has no surface");
 }
 
-/// Those by which the shape is recognised, and where it turns away from the eye.
+/// Edges that show the shape, and the silhouette.
 SharpEdges marked_edges(const Mesh& mesh) {
   return sharp_edges(mesh, most_edges, [](const Vector<3>& n, const Vector<3>& m) {
     return (n.dot(View::towards_eye()) > 0) != (m.dot(View::towards_eye()) > 0);
   });
 }
 
-/// Cuts one edge where it goes behind the surface or comes out.
+/// Cuts an edge where it enters or leaves the hidden region.
 void split_where_hidden(const CanvasPoint& a, const CanvasPoint& b, const DepthBuffer& surface, double bias,
                         std::vector<Stroke>& strokes) {
   const double length = std::hypot(b.x - a.x, b.y - a.y);
@@ -121,7 +121,7 @@ std::vector<Stroke> outline_of(const Mesh& mesh, const View& view) {
     const auto& [a, b, c] = mesh.triangles[t];
     surface.draw_triangle(points[a], points[b], points[c], t);
   }
-  // An edge lies on the surface that must not hide it; the raster knows that surface to about a pixel.
+  // An edge lies on the surface that must not hide it; the raster's depth is accurate to about a pixel.
   const double bias = 3;
   std::vector<Stroke> strokes;
   for (const auto& [from, to] : marked_edges(mesh))

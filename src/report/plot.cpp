@@ -5,14 +5,14 @@
 #include <limits>
 
 #include "bernal/core/text.hpp"
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 
 namespace bernal {
 namespace {
 
-constexpr int most_ticks = 12;  // where the axis is so short that adding a step changes nothing
+constexpr int most_ticks = 12;  // for an axis so short that adding a step changes nothing
 
-/// 1, 2 or 5 times a power of ten from one end to the other; powers alone where they are many.
+/// 1, 2 and 5 times powers of ten; only powers if there are many.
 std::vector<double> logarithmic_ticks(double from, double to) {
   std::vector<double> values;
   if (!(from > 0) || !(to < std::numeric_limits<double>::infinity())) return values;

@@ -9,21 +9,21 @@
 
 namespace bernal {
 
-/// How an axis is divided: evenly; evenly in the logarithm of what it shows; or it shows decimal logarithms.
+/// Division of an axis: even; even in the logarithm; or of decimal logarithms.
 enum class Scale { linear, logarithmic, exponents };
 
 struct Axis {
-  double from = 0, to = 1;  ///< from < to; positive where logarithmic
+  double from = 0, to = 1;  ///< from < to; positive if logarithmic
   std::string_view label = {};
   Scale scale = Scale::linear;
 };
 
-/// Where the axes are, in the units of the picture; y grows downwards.
+/// Position of the axes in picture units; y grows downwards.
 struct PlotArea {
   double left, top, right, bottom;
 };
 
-/// The numbers that stand at an axis, and how they are written.
+/// The numbers at an axis, and their format.
 class Ticks {
  public:
   explicit Ticks(const Axis&);
@@ -36,7 +36,7 @@ class Ticks {
   std::vector<double> values_;
 };
 
-/// A plot area with two axes; draws itself into SVG text, whose style sheet knows the classes grid, axis and
+/// A plot area with two axes, drawn as SVG text; the style sheet must define the classes grid, axis and
 /// label.
 class Plot {
  public:
@@ -46,7 +46,7 @@ class Plot {
   double x(double v) const { return area_.left + (area_.right - area_.left) * share(x_, v); }
   double y(double v) const { return area_.bottom - (area_.bottom - area_.top) * share(y_, v); }
 
-  /// The other way round: what stands at a place of the picture.
+  /// The inverse: the value at a position in the picture.
   double x_at(double place) const { return value(x_, (place - area_.left) / (area_.right - area_.left)); }
   double y_at(double place) const { return value(y_, (area_.bottom - place) / (area_.bottom - area_.top)); }
 
@@ -54,9 +54,9 @@ class Plot {
   void add(fmt::format_string<Args...> format, Args&&... args) {
     out_ += fmt::format(format, std::forward<Args>(args)...);
   }
-  /// Grid lines, numbers and labels, that of y above the axis.
+  /// Grid lines, numbers and labels, the y label above the axis.
   void axes();
-  /// A line through points in the units of the axes.
+  /// A line through points given in axis units.
   void line(std::span<const double> xs, std::span<const double> ys, std::string_view classes);
 
   std::string finish() && { return std::move(out_); }

@@ -8,7 +8,7 @@ namespace {
 
 using ReferenceJson = nlohmann::ordered_json;  // writes infinity as null
 
-/// Defaults are numbers, words, flags and arrays of them, which TOML and JSON write alike.
+/// Defaults are numbers, words, flags and arrays of them, which have the same syntax in TOML and JSON.
 ReferenceJson json_of_key(const ReferenceKey& key) {
   return {{"name", key.name},
           {"help", key.help},

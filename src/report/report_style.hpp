@@ -3,7 +3,7 @@
 
 namespace bernal {
 
-/// The look of report.html, light and dark.
+/// The style sheet of report.html, light and dark.
 inline constexpr std::string_view report_style = R"css(
 :root { color-scheme: light dark; --ink:#1d2733; --dim:#5d6b7a; --rule:#dde3e9; --page:#ffffff; --card:#f5f7f9;
   --first:#2f8ba3; --second:#3a3f8f; --yes:#14804a; --no:#c0322b; }

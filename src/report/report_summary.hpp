@@ -5,7 +5,7 @@
 
 namespace bernal {
 
-/// The figures at the top of a report.json.
+/// The main figures of a report.json.
 struct ReportSummary {
   std::string version, outcome, reason, hash, cell;
   std::optional<std::size_t> n, rattlers;
@@ -13,7 +13,7 @@ struct ReportSummary {
   bool certified = false;
 };
 
-/// Nothing where the text is no report of bernal's.
+/// Absent if the text is not a report of bernal.
 std::optional<ReportSummary> summary_of_report(const std::string& report);
 
 }  // namespace bernal

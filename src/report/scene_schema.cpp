@@ -1,4 +1,4 @@
-// What `bernal keys --schema` prints, from the one table that scenes are read by.
+// The output of `bernal keys --schema`, made from the table that scenes are read by.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -27,7 +27,7 @@ SceneSchema array_of(SceneSchema items, std::size_t least, std::size_t most = 0)
   return made;
 }
 
-/// The smallest and the largest length, as `schema::accepts` has them.
+/// The smallest and the largest length, as in `schema::accepts`.
 SceneSchema basic_definitions() {
   const SceneSchema length = {{"type", "number"}, {"minimum", 1e-30}, {"maximum", 1e30}};
   const SceneSchema not_zero = {
@@ -68,7 +68,7 @@ SceneSchema within_range(const ReferenceKey& key) {
   };
   SceneSchema made = {{"type", key.type}};
   if (std::isfinite(key.min)) made[key.above_min ? "exclusiveMinimum" : "minimum"] = limit(key.min);
-  // No larger whole number can be written in TOML; but 1e31, which JSON takes for one.
+  // TOML's largest integer; but 1e31 is an integer for JSON.
   if (whole && key.max >= 0x1p63)
     made["maximum"] = std::numeric_limits<std::int64_t>::max();
   else if (std::isfinite(key.max))
@@ -76,7 +76,7 @@ SceneSchema within_range(const ReferenceKey& key) {
   return made;
 }
 
-/// What the value of a key must be; `sizes` is "radius" or "diameter", where distributions stand in it.
+/// The schema of a key's value; `sizes` is "radius" or "diameter" if its value can be a distribution.
 SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "flag")
     return key.min > 0 ? SceneSchema{{"const", true}} : SceneSchema{{"type", "boolean"}};
@@ -103,7 +103,7 @@ const ReferenceKey* find(const ReferenceTable& table, const std::string& name) {
   return found == table.keys.end() ? nullptr : &*found;
 }
 
-/// Of a choice the keys in every set that must be there, and those that must not.
+/// For a choice of key sets: the required keys of each set, and the keys it excludes.
 SceneSchema schema_of_choice(const ReferenceTable& table, const std::vector<std::vector<std::string>>& sets) {
   SceneSchema made = {{"anyOf", SceneSchema::array()}};
   for (const auto& set : sets) {
@@ -126,7 +126,7 @@ SceneSchema schema_of_choice(const ReferenceTable& table, const std::vector<std:
   return made;
 }
 
-/// A table that holds its keys and no others, and `selector` with its name.
+/// A table with exactly these keys, and `selector` with its name.
 SceneSchema schema_of_table(const ReferenceTable& table, const std::string& selector,
                             const std::string& sizes = {}) {
   SceneSchema properties = SceneSchema::object(), required = SceneSchema::array();
@@ -153,8 +153,7 @@ SceneSchema schema_of_table(const ReferenceTable& table, const std::string& sele
   return made;
 }
 
-/// The table where lengths are radii: without what is a diameter by its name. Nothing where it cannot do
-/// without.
+/// The table with lengths as radii, without keys that are diameters by name. Absent if it needs these.
 std::optional<ReferenceTable> as_radii(ReferenceTable table) {
   std::erase_if(table.keys, [](const ReferenceKey& key) { return key.is_diameter; });
   const auto has_all = [&](const std::vector<std::string>& set) {
@@ -165,7 +164,7 @@ std::optional<ReferenceTable> as_radii(ReferenceTable table) {
   return table;
 }
 
-/// Adds one definition a table of the group, and `name`, one of them.
+/// Adds a definition for each table of the group, and `name` for a choice of them.
 void define_group(const ReferenceGroup& group, const std::string& name, SceneSchema& definitions) {
   const bool is_size = group.name == "diameter";
   SceneSchema choice = SceneSchema::array();
@@ -205,7 +204,7 @@ std::string scene_schema_as_json() {
         tables[table.name] = schema_of_table(table, "");
     }
   }
-  // Sizes may be left out where spheres are there to begin with.
+  // Sizes are optional if a start is given.
   SceneSchema& sizes = tables.at("spheres").at("allOf").back();
   sizes.at("anyOf").push_back(
       {{"required", {"start"}}, {"properties", {{"radius", false}, {"diameter", false}}}});

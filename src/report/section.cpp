@@ -9,7 +9,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "cad/plane_cut.hpp"
+#include "cad/repair/plane_cut.hpp"
 #include "files/csv_headings.hpp"
 #include "report/disc_picture.hpp"
 #include "report/section_outline.hpp"
@@ -17,10 +17,10 @@
 namespace bernal {
 namespace {
 
-/// Of the area of a circle.
+/// Relative to the area of a circle.
 constexpr double rounding = 1e-9;
 
-/// Of any length; with it the ways of looking at the plane.
+/// The normal may have any length; also chooses the picture's axes.
 SectionPlane plane_across(const Vector<3>& normal, double offset, std::string text) {
   SectionPlane plane;
   const double length = normal.stableNorm();
@@ -30,7 +30,7 @@ SectionPlane plane_across(const Vector<3>& normal, double offset, std::string te
   const Vector<3> up = Vector<3>::UnitZ() - plane.normal[2] * plane.normal;
   plane.up = up.norm() > 1e-6 ? Vector<3>(up.normalized()) : Vector<3>::UnitY();
   plane.right = plane.up.cross(plane.normal).normalized();
-  // From the side where x runs to the right, or else y.
+  // Seen from the side where x, or else y, runs to the right.
   if (plane.right[0] < 0 || (plane.right[0] == 0 && plane.right[1] < 0)) plane.right = -plane.right;
   return plane;
 }
@@ -46,7 +46,7 @@ int axis_of_middle(const Domain& domain) {
   return box->has_wall(0) || box->has_wall(2) ? 1 : 0;
 }
 
-/// Halfway up the facet that reaches farthest along the axis: a plane there cuts the surface.
+/// Half-way along the facet that extends farthest along the axis: a plane there cuts the surface.
 double where_it_is_cut(const Mesh& mesh, int axis) {
   double widest = -1, place = 0;
   for (const auto& t : mesh.triangles) {
@@ -59,8 +59,8 @@ double where_it_is_cut(const Mesh& mesh, int axis) {
   return place;
 }
 
-/// Calls visit(shift) for the shifts by whole periods after which a sphere of this radius with its centre in
-/// one period may reach into it.
+/// Calls visit(shift) for the shifts by whole periods that can bring a sphere of this radius, with its centre
+/// in one period, into it.
 template <class Visit>
 void for_each_shift(const Boundary<3>& boundary, double radius, Visit&& visit) {
   int most[3];
@@ -112,7 +112,7 @@ SectionPlane middle_plane(const Domain& domain) {
 
 namespace {
 
-/// "y = 5 mm" of "y = 5"; what is no length bears no unit.
+/// "y = 5 mm" from "y = 5"; only a length gets a unit.
 std::string caption_of(std::string_view plane, std::string_view unit) {
   const std::string_view right = stripped(plane.substr(plane.find('=') + 1), " \t");
   double length;
@@ -157,7 +157,7 @@ Section section_of(const Spheres<dynamic>& spheres, const Domain& domain, const 
         return;
       const double whole = std::numbers::pi * radius * radius;
       double covered = whole;
-      if (boundary.repeats()) {  // where nothing does, spheres lie inside
+      if (boundary.repeats()) {  // without periods, spheres lie inside
         covered = 0;
         for (const Loop& loop : section.outline) covered += area_within(loop, there, radius);
         covered = std::abs(covered);
@@ -172,10 +172,10 @@ Section section_of(const Spheres<dynamic>& spheres, const Domain& domain, const 
 
 namespace {
 
-/// More circles than that make no picture that tells more.
+/// More circles make the picture no clearer.
 constexpr std::size_t most_circles = 30'000;
 
-/// Of very many circles those in a corner of a rectangle, cut off at its sides.
+/// Limits a picture of very many circles to a corner of the rectangle, clipped at its sides.
 void show_corner(DiscPicture& picture) {
   const auto is_rectangle = [&] {
     return picture.outline.size() == 1 &&

@@ -13,7 +13,7 @@ namespace {
 
 using FlatLoop = std::vector<Vector<2>>;
 
-/// A polygon of these many corners on a circle leaves it by 1 - cos(π / 720) = 1e-5 of its radius.
+/// A polygon with this many corners on a circle departs from it by 1 - cos(π / 720) = 1e-5 of its radius.
 constexpr int round_points = 720;
 
 Vector<2> in_plane(const SectionPlane& plane, const Vector<3>& p) {
@@ -24,14 +24,14 @@ double height_above(const SectionPlane& plane, const Vector<3>& p) {
   return plane.normal.dot(p) - plane.offset;
 }
 
-/// With what lies on the plane taken for above it, or for below.
+/// Corners on the plane count as above it, or as below.
 std::vector<FlatLoop> cut_of(const Mesh& mesh, const SectionPlane& plane, bool on_is_above) {
   std::vector<double> heights;
   heights.reserve(mesh.vertices.size());
   for (const Vector<3>& v : mesh.vertices) heights.push_back(height_above(plane, v));
   const auto above = [&](std::uint32_t v) { return on_is_above ? heights[v] >= 0 : heights[v] > 0; };
 
-  // The line enters a triangle through one edge and leaves it through another; both are known by their
+  // The line enters a triangle through one edge and leaves it through another; both are identified by their
   // corners, so that the pieces join without a tolerance.
   using Side = std::pair<std::uint32_t, std::uint32_t>;
   std::multimap<Side, Side> pieces;
@@ -91,12 +91,12 @@ std::vector<FlatLoop> cut_of(const Sphere& sphere, const SectionPlane& plane) {
   return {loop};
 }
 
-/// With s the sine of the angle between axis and plane: an ellipse with the half axes R / |s| and R, between
-/// the lines where the plane meets the lids; two lines along the axis where it is parallel to the plane.
+/// With s the sine of the angle between axis and plane: an ellipse with half axes R / |s| and R, between the
+/// lines where the plane meets the lids; two lines along the axis if it is parallel to the plane.
 std::vector<FlatLoop> cut_of(const Cylinder& cylinder, const SectionPlane& plane) {
   const Vector<3> axis = cylinder.axis.normalized();
   const double s = plane.normal.dot(axis), h = height_above(plane, cylinder.base), r = cylinder.radius;
-  // Below this the ellipse is so long that its ends could not be told from infinity.
+  // Below this the ends of the ellipse are practically at infinity.
   if (std::abs(s) < 1e-12) {
     if (!(std::abs(h) < r)) return {};
     const Vector<3> across = plane.normal.cross(axis).normalized() * std::sqrt((r - h) * (r + h));
@@ -107,7 +107,7 @@ std::vector<FlatLoop> cut_of(const Cylinder& cylinder, const SectionPlane& plane
       loop.push_back(in_plane(plane, p));
     return {loop};
   }
-  const double middle = -h / s;  // along the axis, where it meets the plane
+  const double middle = -h / s;  // position along the axis at which it meets the plane
   const Vector<3> center = cylinder.base + middle * axis;
   Vector<3> steep = axis - s * plane.normal;
   double cosine = steep.norm();
@@ -117,7 +117,7 @@ std::vector<FlatLoop> cut_of(const Cylinder& cylinder, const SectionPlane& plane
   }
   steep /= cosine;
   const Vector<3> level = plane.normal.cross(steep);
-  // A point center + x steep + y level stands at middle + x cosine along the axis.
+  // A point center + x steep + y level is at middle + x cosine along the axis.
   const double half = r / std::abs(s);
   const double from = std::clamp(-middle / cosine / half, -1.0, 1.0);
   const double to = std::clamp((cylinder.height - middle) / cosine / half, -1.0, 1.0);
@@ -137,7 +137,7 @@ std::vector<FlatLoop> cut_of(const Cylinder& cylinder, const SectionPlane& plane
 
 double cross_of(const Vector<2>& a, const Vector<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// Of the circle of this radius around the origin, with the triangle (0, a, b); signed.
+/// The signed common area of the circle of this radius about the origin and the triangle (0, a, b).
 double shared_with_triangle(const Vector<2>& a, const Vector<2>& b, double radius) {
   const auto sector = [&](const Vector<2>& p, const Vector<2>& q) {
     return 0.5 * radius * radius * std::atan2(cross_of(p, q), p.dot(q));

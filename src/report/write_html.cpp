@@ -7,10 +7,10 @@
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
-#include "report/html_text.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
 #include "report/report_style.hpp"
+#include "viewer/html.hpp"
 #include "viewer/viewer_files.hpp"
 #include "viewer/viewer_parts.hpp"
 
@@ -38,7 +38,7 @@ std::string seconds_text(double seconds) {
              : fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60), std::fmod(seconds, 60));
 }
 
-/// A packing that was read back from its files has no plan.
+/// A packing that was read from its files has no plan.
 std::string expected_text(const Packing& packing) {
   if (!(packing.expected_packing_fraction > 0)) return {};
   std::string text = fmt::format("; {:.3f} was expected", packing.expected_packing_fraction);
@@ -62,7 +62,7 @@ void write_headline(Page& page, const Report& report) {
   if (const auto& bed = report.measured.bed)
     page.card(fmt::format("{:.3f}", bed->porosity), "Porosity of the bed",
               fmt::format("up to its surface, {:.4g} {} high; {}", bed->height,
-                          escaped(name_of(packing.scene.unit)), rest_in_short(bed->rest)));
+                          escaped(name_of(packing.scene.unit)), short_rest_text(bed->rest)));
   page.card(certified ? "yes" : "no", "Certified",
             !certified ? "see the certificate below for what is wrong"
             : allowed_overlap > 0
@@ -105,9 +105,8 @@ void write_scene(Page& page, const Report& report, std::string_view scene) {
       escaped(scene));
 }
 
-/// Where spheres are relaxed overlaps go away; where they are compressed they settle; else only their number
-/// changes.
-void write_course(Page& page, const Packing& packing) {
+/// In relaxation overlaps vanish; in compression spheres settle; otherwise only their number changes.
+void write_history(Page& page, const Packing& packing) {
   if (packing.history.size() < 2) return;
   const auto any = [&](auto is) { return std::ranges::any_of(packing.history, is); };
   const bool grown = !any([](const Milestone& m) { return m.stage != "grow"; });
@@ -240,7 +239,7 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
   write_chambers(page, report);
   write_walls(page, report);
   write_structure(page, report);
-  write_course(page, report.packing);
+  write_history(page, report.packing);
   write_effects(page, report.packing);
   write_certificate(page, report);
   page.add(

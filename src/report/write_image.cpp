@@ -35,7 +35,7 @@ std::uint64_t bytes_of(const VoxelImage& image) {
          static_cast<std::uint64_t>(bytes_per_voxel(image.values));
 }
 
-/// Of a row of at least so many things the first ones, as text.
+/// The first `count` entries of a row as text.
 template <class Row>
 std::string joined(const Row& row, int count, std::string_view between) {
   std::string text;
@@ -115,7 +115,7 @@ _)",
 }
 
 void write_raw(OutputFile& file, const VoxelImage& image, const Monitor& monitor) {
-  constexpr std::size_t piece = std::size_t{1} << 20;  // so that the file's buffer stays small
+  constexpr std::size_t piece = std::size_t{1} << 20;  // keeps the file's buffer small
   voxelise(
       image.spheres, image.domain, image.grid, image.values,
       [&](std::string_view layers) {

@@ -6,7 +6,7 @@
 
 namespace bernal {
 
-/// An image of a packing, and what is said of it. Refers to what it was made of.
+/// An image of a packing with its metadata. Holds references.
 struct VoxelImage {
   const Spheres<dynamic>& spheres;
   const Domain& domain;
@@ -16,34 +16,34 @@ struct VoxelImage {
   std::string title;  ///< one line
 };
 
-/// What the values of voxels mean: "0 pore, 1 sphere, 2 outside the container".
+/// Explanation of the values: "0 pore, 1 sphere, 2 outside the container".
 std::string meaning_of(VoxelValues);
 
-// All of them write one array of voxels, x fastest, then y, then z, little-endian, as it is made; see
-// `voxelise` for what may be thrown and what it costs. Nothing is certain before the file is closed.
+// All of these write an array of voxels, x fastest, then y, then z, little-endian, while it is made; see
+// `voxelise` for exceptions and cost. Nothing is certain before the file is closed.
 
-/// NRRD, with its header in the file: ITK, 3D Slicer, ParaView, DREAM.3D. The origin is the centre of the
-/// first voxel. Source: Definition of NRRD File Format (teem.sourceforge.net/nrrd/format.html).
+/// NRRD with embedded header: ITK, 3D Slicer, ParaView, DREAM.3D. The origin is the centre of the first
+/// voxel. Source: Definition of NRRD File Format (teem.sourceforge.net/nrrd/format.html).
 void write_nrrd(OutputFile&, const VoxelImage&, const Monitor& = {});
 
-/// VTK's ImageData, one value a cell, raw appended data with lengths of 64 bits: ParaView, PyVista. The array
-/// is called "phase", "FeatureIds" or "solid_fraction". The origin is the corner of the first voxel.
+/// VTK's ImageData, one value a cell, raw appended data with 64-bit lengths: ParaView, PyVista. The array is
+/// named "phase", "FeatureIds" or "solid_fraction". The origin is the corner of the first voxel.
 void write_vti(OutputFile&, const VoxelImage&, const Monitor& = {});
 
-/// TIFF 6.0, uncompressed, one page a layer of 8 or 32 bits, whose first row is that of the lowest y; with a
-/// description as ImageJ writes it, for the distance of layers and the unit. Of 4 GiB and more it is a
-/// BigTIFF. A TIFF has no place for the origin. The scale is right to 1e-9, or, where a quotient of 32 bits
-/// cannot hold it, left out, and the edges of a voxel stand in the description.
+/// TIFF 6.0, uncompressed, one page a layer of 8 or 32 bits, with the lowest y in the first row; ImageJ's
+/// description holds the distance of layers and the unit. BigTIFF from 4 GiB on. TIFF does not store the
+/// origin. The scale is accurate to 1e-9; if a quotient of 32-bit numbers cannot represent it, it is left
+/// out, and the description gives the edges of a voxel.
 void write_tiff(OutputFile&, const VoxelImage&, const Monitor& = {});
 bool has_scale_in_tiff(const VoxelGrid&);
-/// All of it but the voxels, which follow.
+/// Everything before the voxels.
 void write_tiff_directories(OutputFile&, const VoxelImage&);
 
-/// The voxels and nothing else.
+/// The voxels only.
 void write_raw(OutputFile&, const VoxelImage&, const Monitor& = {});
-/// What one has to know to read them, as a JSON object: "dtype" and "shape" in the words of NumPy, "sizes"
-/// along x, y, z, "spacing", "corner" of the first voxel, "origin" its centre, "unit", "values"; and a seal,
-/// see `is_sealed`.
+/// Metadata for reading them, as a JSON object: "dtype" and "shape" as in NumPy, "sizes" along x, y, z,
+/// "spacing", "corner" of the first voxel, "origin" (its centre), "unit", "values"; and a seal, see
+/// `is_sealed`.
 std::string raw_header(const VoxelImage&);
 
 }  // namespace bernal

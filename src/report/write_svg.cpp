@@ -11,7 +11,7 @@
 #include "report/disc_picture.hpp"
 #include "report/legend.hpp"
 #include "report/outline.hpp"
-#include "report/palette.hpp"
+#include "viewer/palette.hpp"
 #include "viewer/view.hpp"
 
 namespace bernal {
@@ -28,9 +28,9 @@ struct Ball {
   std::uint32_t sphere;
 };
 
-/// The ids of the spheres, nearest centre first. Disjoint balls painted from the other end hide each other
-/// rightly, whatever their sizes: the plane of equal power of two balls separates them, and the eye's side
-/// of it is the side of the nearer centre.
+/// The ids of the spheres, nearest centre first. Disjoint balls painted in reverse order hide each other
+/// correctly for any sizes: the plane of equal power separates two balls, and the nearer centre is on the
+/// eye's side of it.
 std::vector<std::uint32_t> front_to_back(const Spheres<dynamic>& spheres) {
   std::vector<std::pair<double, std::uint32_t>> order;
   order.reserve(spheres.size());
@@ -45,8 +45,8 @@ std::vector<std::uint32_t> front_to_back(const Spheres<dynamic>& spheres) {
   return ids;
 }
 
-/// Draws the spheres and answers those that may be seen, nearest first; the k-th of them has the id k in the
-/// buffer.
+/// Draws the spheres and returns those that may be visible, nearest first; the k-th of them has the id k in
+/// the buffer.
 std::vector<Ball> draw(const Spheres<dynamic>& spheres, const View& view, DepthBuffer& depths) {
   std::vector<Ball> balls;
   for (const std::uint32_t i : front_to_back(spheres)) {
@@ -58,8 +58,8 @@ std::vector<Ball> draw(const Spheres<dynamic>& spheres, const View& view, DepthB
   return balls;
 }
 
-/// How dark a ball is drawn, in [0, 1]: what stands around it takes light away, and so does a side of the
-/// packing that is turned from the light. Both are read off the depths of what can be seen.
+/// Darkness of a ball, in [0, 1]: from occlusion by its surroundings, and from the orientation of the
+/// packing's surface to the light. Both are computed from the visible depths.
 class Shading {
  public:
   Shading(const DepthBuffer& depths, double mean_radius) : depths_(depths), patch_(7 * mean_radius) {}
@@ -82,7 +82,7 @@ class Shading {
     return sum / (3 * directions);
   }
 
-  /// The patch of the packing around the ball as a tilted plane under a light from the upper left.
+  /// The packing's surface around the ball as a plane lit from the upper left.
   double aversion(const Ball& ball) const {
     Vector<3> normal(0, 0, 1);
     for (int k = 0; k < directions; ++k) {
@@ -95,7 +95,7 @@ class Shading {
   }
 
   static double angle(int k) { return 2 * std::numbers::pi * (k + 0.5) / directions; }
-  /// How much nearer to the eye than the ball is what can be seen beside it.
+  /// How much nearer to the eye than the ball the visible surface beside it is.
   double rise(const Ball& ball, int k, double distance) const {
     return depths_.depth(ball.center.x + distance * std::cos(angle(k)),
                          ball.center.y + distance * std::sin(angle(k))) -
@@ -108,7 +108,7 @@ class Shading {
 
 void append_gradients(std::string& out) {
   const Colour day{1, 0.985, 0.95};
-  const auto darker = [](const Colour& c, double by) {  // red goes first: shadows are cool
+  const auto darker = [](const Colour& c, double by) {  // red first: shadows are cool
     return Colour{c.red * (1 - 0.80 * by), c.green * (1 - 0.84 * by), c.blue * (1 - 0.66 * by)};
   };
   out += "<defs>\n";
@@ -154,7 +154,7 @@ void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const Vie
     if (k != DepthBuffer::nothing) ++visible_points[k];
   }
   const Shading shading(depths, mean_radius);
-  // A ball smaller than the raster may be met by none of its points: its centre decides.
+  // A ball smaller than the raster may contain no raster point: then its centre decides.
   const auto shows = [&](std::size_t k) {
     const Ball& ball = balls[k];
     return visible_points[k] >= fewest_visible_points ||
@@ -171,7 +171,7 @@ void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const Vie
   }
 }
 
-/// What has to fit on the canvas: the domain, and the spheres that stick out of one period of it.
+/// The points that must fit on the canvas: the domain, and spheres that protrude from the period.
 std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const Spheres<dynamic>& spheres) {
   if (!is_periodic(domain) || spheres.empty()) return mesh.vertices;
   const Vector<3> middle = bounds_of(domain).center();
@@ -185,10 +185,10 @@ std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const 
   return corners;
 }
 
-/// Of more spheres in a box a corner is shown, with about so many; nobody could tell them apart otherwise.
+/// For more spheres in a box a corner with about `in_corner` is shown; more could not be distinguished.
 constexpr std::size_t most_in_box = 2'000'000, in_corner = 200'000;
 
-/// The spheres of a corner of the box, and its edges, `part` of those of the box.
+/// The spheres of a corner of the box, and its edges, `part` times those of the box.
 std::pair<Spheres<dynamic>, Box> corner_of(const Spheres<dynamic>& spheres, const Box& box, double part) {
   Box corner = box;
   corner.size *= part;
@@ -213,7 +213,7 @@ std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std
   const View view(corners_of(mesh, domain, spheres), canvas_size, canvas_margin, narrowest_canvas);
   const SizeScale sizes(spheres.r);
   const std::vector<Stroke> strokes = outline_of(mesh, view);
-  const bool periodic = is_periodic(domain);  // spheres stick out and hide its edges
+  const bool periodic = is_periodic(domain);  // spheres protrude and hide its edges
 
   std::string out = svg_head(view.width(), view.height(), spheres.size());
   append_gradients(out);
@@ -229,7 +229,7 @@ std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std
 
 constexpr double most_discs = 20'000;
 
-/// Of a polygon all discs are shown. Cost: O(N).
+/// All discs in a polygon. Cost: O(N).
 std::string disc_svg(const Spheres<dynamic>& spheres, const Polygon& polygon, std::string_view unit) {
   const Bounds<dynamic> bounds = bounds_of<dynamic>(polygon);
   DiscPicture picture{{}, polygon.loops, {bounds.lower, bounds.upper}};
@@ -238,9 +238,9 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const Polygon& polygon, st
   return svg_of(picture, SizeScale(spheres.r), spheres.size(), unit);
 }
 
-/// Discs in a box of two dimensions: what is in it, images that reach into it included, and faintly what
-/// sticks out of it. Of very many discs a part of the box is shown, which the key says. Precondition: two
-/// dimensions, centres in one period. Cost: O(N).
+/// Discs in a box of two dimensions: those in it, images that reach into it, and faintly the parts beyond it.
+/// For very many discs a part of the box is shown, as the key says. Precondition: two dimensions, centres in
+/// one period. Cost: O(N).
 std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::string_view unit) {
   const auto n = static_cast<double>(spheres.size());
   const double part = n > most_discs ? std::sqrt(most_discs / n) : 1;

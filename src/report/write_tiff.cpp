@@ -14,13 +14,13 @@
 namespace bernal {
 namespace {
 
-/// Numbers as a TIFF or a BigTIFF has them.
+/// Numbers in TIFF or BigTIFF encoding.
 class TiffBytes {
  public:
   explicit TiffBytes(bool big) : big_(big) {}
 
   std::uint64_t offset_bytes() const { return big_ ? 8 : 4; }
-  /// Of a directory of so many tags.
+  /// Size of a directory with this many tags.
   std::uint64_t directory_bytes(std::uint64_t tags) const {
     return count_bytes() + tags * (4 + 2 * offset_bytes()) + offset_bytes();
   }
@@ -30,7 +30,7 @@ class TiffBytes {
   }
   void put_offset(std::uint64_t value) { put(value, offset_bytes()); }
   void put_count(std::uint64_t tags) { put(tags, count_bytes()); }
-  /// A tag and its value, or where that stands if it is too long to stand here.
+  /// A tag with its value, or the position of the value if it is too long.
   void put_tag(std::uint64_t number, std::uint64_t type, std::uint64_t count, std::uint64_t value) {
     put(number, 2);
     put(type, 2);
@@ -46,9 +46,9 @@ class TiffBytes {
   bool big_;
 };
 
-/// The quotient of two numbers of 32 bits that is nearest to a value, numerator in the first of 64 bits: the
-/// last convergent of its continued fraction that fits, or what lies between that and the next. Nothing where
-/// it is more than 1e-9 of the value away: beyond 2^32, and below its inverse.
+/// The quotient of two 32-bit numbers nearest to a value, with the numerator in the first half of the 64
+/// bits: the last convergent of its continued fraction that fits, or an intermediate fraction. Absent if it
+/// is more than 1e-9 off: beyond 2^32, and below its inverse.
 std::optional<std::uint64_t> rational(double value) {
   constexpr double most = 4294967295.0, enough = 1e-9;
   if (!(value > 0) || !std::isfinite(value)) return std::nullopt;
@@ -75,7 +75,7 @@ std::optional<std::uint64_t> rational(double value) {
   return static_cast<std::uint64_t>(best_p) | static_cast<std::uint64_t>(best_q) << 32;
 }
 
-/// Along x and y, voxels in a unit of length.
+/// Voxels per unit of length along x and y.
 using Resolutions = std::array<std::optional<std::uint64_t>, 2>;
 Resolutions resolutions_of(const VoxelGrid& grid) {
   return {rational(1 / grid.spacing[0]), rational(1 / grid.spacing[1])};
@@ -83,7 +83,7 @@ Resolutions resolutions_of(const VoxelGrid& grid) {
 
 constexpr std::uint64_t multiple_of_16(std::uint64_t value) { return (value + 15) / 16 * 16; }
 
-/// What ImageJ reads beside the tags: the distance of layers, the unit, and what to show as black and white.
+/// What ImageJ reads besides the tags: the distance of layers, the unit, and the display range.
 std::string description_of(const VoxelImage& image) {
   const double white = image.values == VoxelValues::binary     ? 2
                        : image.values == VoxelValues::fraction ? 1
@@ -120,7 +120,7 @@ void write_tiff_directories(OutputFile& file, const VoxelImage& image) {
       pages * (page_bytes + TiffBytes(true).directory_bytes(tags)) + room_for_text >= std::uint64_t{1} << 32;
   TiffBytes head(big);
   head.out = big ? std::string("II\x2b\0\x08\0\0\0", 8) : std::string("II\x2a\0", 4);
-  // The header ends with the place of the first directory; before that stand what its tags have no room for.
+  // The header ends with the position of the first directory; before that come values too long for its tags.
   const std::uint64_t resolutions = head.out.size() + head.offset_bytes(), text = resolutions + 16,
                       directories = multiple_of_16(text + description.size() + 1),
                       voxels = multiple_of_16(directories + pages * head.directory_bytes(tags));
@@ -136,7 +136,7 @@ void write_tiff_directories(OutputFile& file, const VoxelImage& image) {
   for (std::uint64_t page = 0; page < pages; ++page) {
     TiffBytes directory(big);
     directory.put_count(tags);
-    directory.put_tag(254, dword, 1, pages > 1 ? 2 : 0);  // a page of several
+    directory.put_tag(254, dword, 1, pages > 1 ? 2 : 0);  // one page of several
     directory.put_tag(256, dword, 1, width);
     directory.put_tag(257, dword, 1, height);
     directory.put_tag(258, word, 1, 8 * sample);
@@ -151,7 +151,7 @@ void write_tiff_directories(OutputFile& file, const VoxelImage& image) {
       directory.put_tag(282, quotient, 1, big ? across[0] : resolutions);
       directory.put_tag(283, quotient, 1, big ? across[1] : resolutions + 8);
     }
-    directory.put_tag(296, word, 1, 1);  // no unit that TIFF has a number for
+    directory.put_tag(296, word, 1, 1);  // no unit that TIFF can encode
     directory.put_tag(339, word, 1, image.values == VoxelValues::fraction ? 3 : 1);
     directory.put_offset(page + 1 < pages ? directories + (page + 1) * head.directory_bytes(tags) : 0);
     file.append(directory.out);

@@ -4,10 +4,11 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
-#include "result/unpublished.hpp"
+#include "files/put_in_place.hpp"
 #include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/spheres_file.hpp"
+#include "scene/unpublished.hpp"
 
 namespace bernal {
 
@@ -31,6 +32,8 @@ Spheres<dynamic> of_the_scene(const Scene& scene, const std::filesystem::path& f
 }
 
 }  // namespace
+
+bool is_unpublished(const std::filesystem::path& folder) { return is_begun(FolderTree(folder)); }
 
 Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file) {
   return of_the_scene(scene, file, read_csv(file));

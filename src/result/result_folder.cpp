@@ -12,14 +12,14 @@
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "cad/files_of_part.hpp"
-#include "cad/known_formats.hpp"
+#include "cad/read/files_of_part.hpp"
+#include "cad/read/known_formats.hpp"
 #include "files/bytes_of_file.hpp"
 #include "files/sha256.hpp"
 #include "report/report.hpp"
-#include "result/unpublished.hpp"
 #include "scene/given_files.hpp"
 #include "scene/output_table.hpp"
+#include "scene/unpublished.hpp"
 
 namespace fs = std::filesystem;
 

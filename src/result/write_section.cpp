@@ -4,7 +4,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/report/section.hpp"
-#include "cad/known_formats.hpp"
+#include "cad/read/known_formats.hpp"
 #include "files/input_file.hpp"
 #include "files/staged_folder.hpp"
 #include "result/result_folder.hpp"

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/tolerance.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "near/cell_grid.hpp"
 #include "plan/stages.hpp"
 #include "plan/start.hpp"

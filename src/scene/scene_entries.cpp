@@ -13,8 +13,6 @@ constexpr std::string_view wall_words[] = {"double", "filtered", "exact"};
 constexpr std::string_view draw_words[] = {"random", "quantiles"};
 constexpr std::string_view up_words[] = {"unchanged", "x", "y", "z"};
 constexpr std::string_view interior_words[] = {"solid", "cavity"};
-constexpr std::string_view repair_words[] = {name_of(Repair::holes), name_of(Repair::self_intersections),
-                                             name_of(Repair::wrap)};
 
 }  // namespace
 
@@ -178,7 +176,7 @@ Member repair() {
     auto& of = static_cast<MeshFile*>(mesh)->repair;
     of.clear();
     for (const std::string& text : std::get<std::vector<std::string>>(value))
-      of.push_back(static_cast<Repair>(std::ranges::find(repair_words, text) - repair_words));
+      of.push_back(static_cast<Repair>(std::ranges::find(repair_names, text) - repair_names));
   };
   return member;
 }
@@ -357,7 +355,7 @@ const std::vector<Entry>& container_entries() {
                     names(repair(), "repair",
                           "what may be done to a surface that is no wall: close holes, cut out "
                           "self-intersections, wrap it",
-                          words(repair_words)),
+                          words(repair_names)),
                     length(&MeshFile::largest_hole, "largest_hole",
                            "holes up to this width are closed; if absent up to half of the part's: what "
                            "is wider is an open top"),

@@ -50,7 +50,7 @@ struct StageTable {
   void* options_of(Stage& stage) const { return const_cast<void*>(options(stage)); }
 };
 
-/// All of them, in the order in which people are told of them; run/ holds the list.
+/// All of them, in the order in which people are told of them; plan/stages.cpp holds the list.
 std::span<const StageTable* const> stage_tables();
 
 /// Throws Error{bad_scene} for options that no stage has.

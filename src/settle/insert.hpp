@@ -4,45 +4,44 @@
 
 namespace bernal {
 
-/// Random sequential insertion: the spheres that are still to come, in order, each at a uniformly random
-/// place where it overlaps nothing (Han, Feng & Owen 2005, section 2: the initial packing). Ends when the
-/// target or the given packing fraction is reached, or nothing in the window found a place. Cost: O(1) a
-/// trial.
+/// Random sequential insertion: the remaining spheres, in order, each at a uniformly random position where it
+/// overlaps nothing (Han, Feng & Owen 2005, section 2: the initial packing). Ends when the target or the
+/// given packing fraction is reached, or when no sphere of the window found a position. Cost: O(1) a trial.
 StageEnd insert(Work& work, const Insert& options);
 
-/// The same at the sites of a face-centred lattice, each sphere at the next that has room for it: the sites
-/// in random order, so that sizes which come in some order make no pattern. The lattice is the widest whose
-/// sites, in the container and clear of what stands there, hold what is to be placed, and no denser than
-/// spheres as large as the largest of these touch; of sizes that differ, those that are still to come are
-/// then tried at the sites of lattices of half and of a quarter of that, between the others. Its cell is
-/// orthogonal, and stretched so that it divides the periods of the container.
+/// The same at the sites of a face-centred lattice, each sphere at the next site where it fits: the sites are
+/// in random order, so that ordered sizes make no pattern. The lattice is the widest with enough sites,
+/// inside the container and free of present spheres, for the spheres to be placed, and no denser than
+/// touching spheres of the largest size; for unequal sizes the remaining spheres are then tried at the sites
+/// of lattices of half and a quarter of that spacing, between the others. Its cell is orthogonal, and
+/// stretched to divide the container's periods.
 ///
-/// Face-centred, because no lattice holds more: 0.74 of equal spheres, where a simple cubic one ends at 0.52.
-/// For the same reason that of discs is hexagonal: 0.91.
-/// Cost: about twenty looks at as many sites as spheres, O(1) each.
+/// Face-centred, because no lattice is denser: 0.74 of equal spheres, against 0.52 for a simple cubic one.
+/// For the same reason that of discs is hexagonal: 0.91. Cost: about twenty passes over as many sites as
+/// spheres, O(1) each.
 StageEnd insert_on_lattice(Work& work, const Insert& options);
 
-/// The packing fraction at which that ends, of an empty container: of equal spheres within 0.04 where x =
-/// `bed.wall_share` < 0.7, in containers a few spheres wide whatever they happen to hold; of sizes that
-/// differ within a factor of two.
+/// The packing fraction at which that ends in an empty container: for equal spheres within 0.04 if x =
+/// `bed.wall_share` < 0.7 (containers a few spheres wide are irregular); for unequal sizes within a factor of
+/// two.
 double full_lattice(const EmptyBed& bed);
 
-/// Until nothing more finds a place.
+/// Until no further sphere finds a position.
 inline constexpr Insert until_full = {.attempts = 1000, .packing_fraction = 1};
 
-/// The same for all that are asked for, anew, but the largest first: for sizes of which some have hardly any
-/// room where small ones stand. What finds no place is passed over. Ends at once when it can no longer become
-/// as dense as that.
+/// The same for all requested spheres, from the start, the largest first: for sizes some of which hardly fit
+/// once small ones are placed. Spheres that find no position are skipped. Ends immediately when it can no
+/// longer become that dense.
 StageEnd insert_largest_first(Work& work, double densest_so_far = 0);
 
-/// After a stage that moves all spheres at once and could place no more: a few large ones, with hardly any
-/// play between the walls, may have kept all of them from coming free. Where there is much less than is asked
-/// for and likely to fit, or where few are asked for, insertion in an empty bed is tried as well; and where
-/// hardly any are left, these are inserted, and one that has no place is passed over. Returns how the two
+/// After a stage that moves all spheres at once and could place no more: a few large spheres, with hardly any
+/// play between the walls, may have kept all others from coming free. If far fewer than the requested and
+/// likely number are placed, or if few are requested, insertion in an empty bed is tried as well; and if
+/// hardly any are left, these are inserted, skipping those without a position. Returns how the last of these
 /// ended.
 StageEnd insert_what_else_fits(Work& work, StageEnd end);
 
-/// What it brings with it, with its price.
+/// Its effects with their prices.
 std::vector<PlanItem> effects_of_insertion(const Insert& options, const Outlook& outlook);
 
 }  // namespace bernal

@@ -6,7 +6,7 @@
 
 namespace bernal {
 
-/// How far a sphere may move, and what stops it there.
+/// The free path of a sphere, and its end.
 struct FreePath {
   enum class End : std::uint8_t { limit, box, neighbor, wall };
   double length = 0;
@@ -18,10 +18,10 @@ struct FreePath {
 
 /// Moves the spheres of a bed, one at a time, past their neighbours and walls.
 ///
-/// `pick` gathers what the sphere's bounding box lets it meet into columns, in which `free_path` then looks
-/// at four neighbours at once; the one that limits is decided by the kernel (kernels/first_contact.hpp).
-/// Invariant: every gap stays at or above skin/2. Precondition: `Bed::enclose` was called after the last
-/// insertion, removal or sort. One thread a mover. Cost: 3 ns a neighbour for `pick`, 2 for `free_path`.
+/// `pick` gathers the obstacles in the sphere's bounding box into columns, in which `free_path` then tests
+/// four neighbours at once; the limiting one is decided by the kernel (kernels/first_contact.hpp). Invariant:
+/// every gap stays at or above skin/2. Precondition: `Bed::enclose` was called after the last insertion,
+/// removal or sort. One thread a mover. Cost: 3 ns a neighbour for `pick`, 2 for `free_path`.
 class Mover {
  public:
   explicit Mover(Bed& bed) : bed_(bed) {}
@@ -32,19 +32,19 @@ class Mover {
   FreePath free_path(const Vector<3>& u, double limit);
 
   /// Writes into `normals` (unit, from the obstacle to the sphere) the obstacles with a gap of at most `gap`
-  /// that oppose a motion along u; at most `normals.size()` of them. Returns how many. A hint at which
-  /// directions are worth a `free_path`; nothing that limits a motion.
+  /// that oppose a motion along u, at most `normals.size()` of them. Returns how many. Only a hint for
+  /// choosing directions for `free_path`; it does not limit a motion.
   std::size_t contacts(const Vector<3>& u, double gap, std::span<Vector<3>> normals) const;
 
-  /// Moves the sphere along u by a length that `free_path` allowed.
+  /// Moves the sphere along u by a length allowed by `free_path`.
   void advance(const Vector<3>& u, double length);
 
-  /// Moves sphere i to first touch along the unit vector `direction`, and on along what its contacts leave of
-  /// that direction: in the plane of one contact or along the line of two, until they hold it, the `limit` on
-  /// the length of the way is used up or its bounding box ends. That is rolling without friction. Every leg
-  /// is one `free_path`, so no gap ever falls below skin/2.
+  /// Moves sphere i to first touch along the unit vector `direction`, and on along the part of that direction
+  /// that its contacts allow: in the plane of one contact or along the line of two, until it is held, the
+  /// path length reaches `limit` or its bounding box ends. That is rolling without friction. Every leg is one
+  /// `free_path`, so no gap falls below skin/2.
   ///
-  /// Returns how far the sphere is from where it was. Cost: one pass over the neighbours, and one more a leg.
+  /// Returns the sphere's displacement. Cost: one pass over the neighbours, and one more a leg.
   double slide(Bed::Id i, const Vector<3>& direction, double limit);
 
   const Bed::Ball& ball() const { return bed_.balls_[i_]; }

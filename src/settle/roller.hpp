@@ -11,30 +11,30 @@
 
 namespace bernal {
 
-/// Lets the spheres of a bed fall and roll to rest, one at a time, while all others are held.
+/// Lets the spheres of a bed fall and roll to rest, one at a time, with all others fixed.
 ///
 /// A sphere falls along the direction to first contact. Then it rolls without friction: in the plane of one
-/// contact or along the line of two, in whichever leads down most, by steps that Newton's method puts back
-/// onto these contacts, until it meets the next obstacle, loses one of them, or nothing leads down that is
-/// steeper than `level`. There it rests: what holds it is closed to a gap of a skin.
+/// contact or along the line of two, whichever descends most, by steps that Newton's method puts back onto
+/// these contacts, until it meets the next obstacle, loses a contact, or no way is steeper than `level`.
+/// There it rests: the contacts that hold it are closed to a gap of a skin.
 ///
-/// Invariant: every gap stays at or above skin/2, and no way leads out of the sphere's bounding box.
-/// Precondition: as of `Mover`. Cost: a pass over the neighbours and near walls a step, some ten steps a
+/// Invariant: every gap stays at or above skin/2, and the sphere stays in its bounding box. Precondition: as
+/// for `Mover`. Cost: a pass over the neighbours and near walls a step, about ten steps for a sphere that
+/// falls far, one for a sphere at rest.
 /// sphere that falls far, one for a sphere at rest.
 class Roller {
  public:
-  /// The sine of what counts as level.
+  /// Sine of the steepest slope that counts as level.
   static constexpr double level = 1e-7;
 
-  /// With friction, an angle in degrees, a sphere that touches something rests where nothing leads down more
-  /// steeply than that.
+  /// With friction, an angle in degrees, a sphere in contact rests if no way down is steeper than that.
   Roller(Bed& bed, const Vector<3>& direction, double friction = 0)
       : bed_(bed),
         mover_(bed),
         down_(direction),
         flattest_(std::max(level, std::sin(friction * std::numbers::pi / 180))) {}
 
-  /// Returns how far sphere i then is from where it was. It rests there, or its bounding box ended.
+  /// Returns the displacement of sphere i. It rests there, or its bounding box ended.
   double roll(Bed::Id i);
 
  private:
@@ -45,7 +45,7 @@ class Roller {
     Obstacle obstacle;
     double gap;
   };
-  /// What the sphere stays in contact with on its way, one or two, and where that leads first.
+  /// The one or two contacts that the sphere keeps on its way, and the initial direction.
   struct Track {
     std::array<Obstacle, 2> on{};
     int count = 0;
@@ -77,12 +77,12 @@ class Roller {
   Bed& bed_;
   Mover mover_;
   Vector<3> down_;
-  double flattest_;  // sine of the steepest way that is not taken
+  double flattest_;  // sine of the steepest slope that is not followed
   std::vector<Contact> contacts_;
-  std::vector<Vector<3>> normals_;  // of these, unit, from the obstacle to the sphere
+  std::vector<Vector<3>> normals_;  // of the contacts: unit, from the obstacle to the sphere
   static constexpr Obstacle none = ~Obstacle{0};
-  Obstacle stopper_ = none;                     // what ended the step before at once,
-  std::size_t stopper_at_ = SteepestWay::none;  // and where it stands among the contacts
+  Obstacle stopper_ = none;                     // the obstacle that ended the last step immediately,
+  std::size_t stopper_at_ = SteepestWay::none;  // and its index among the contacts
 };
 
 }  // namespace bernal

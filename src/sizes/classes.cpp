@@ -12,7 +12,7 @@ namespace {
 
 struct Class {
   double radius;
-  double share;  ///< of the number; all shares add up to 1
+  double share;  ///< of the number; all shares sum to 1
   double up_to;  ///< share of this class and all smaller ones
   /// Σ share r^k over this class and all larger ones, k = 0 … 3.
   std::array<double, 4> from = {};
@@ -20,7 +20,7 @@ struct Class {
 
 class Classes final : public SizeDistribution {
  public:
-  /// Precondition: ascending radii, shares that add up to 1.
+  /// Precondition: ascending radii, shares that sum to 1.
   explicit Classes(std::vector<Class> classes)
       : SizeDistribution(classes.front().radius, classes.back().radius), classes_(std::move(classes)) {
     std::array<double, 4> from = {};
@@ -109,7 +109,7 @@ std::unique_ptr<SizeDistribution> make_classes(std::vector<double> radii, std::v
   if (same != classes.end())
     throw Error(ErrorCode::bad_argument, fmt::format("two size classes have the radius {}", same->radius));
 
-  // As many spheres as volume over volume of one; relative to the smallest, so that nothing overflows.
+  // Numbers are volumes over sphere volumes; relative to the smallest sphere, so that nothing overflows.
   if (basis == Basis::volume)
     for (Class& c : classes) c.share *= std::pow(classes.front().radius / c.radius, 3);
   const double total = std::transform_reduce(classes.begin(), classes.end(), 0.0, std::plus{},

@@ -5,8 +5,8 @@
 
 namespace bernal {
 
-/// A distribution without what is above `max`: as if every larger radius were drawn again. The other one
-/// outlives it. Precondition: `max` is below its own, and a share of its number at or below that.
+/// A distribution truncated above `max`, as if larger radii were drawn again. The other must outlive it.
+/// Precondition: `max` is below its own, and a share of its number is at or below that.
 class CutAbove final : public SizeDistribution {
  public:
   CutAbove(const SizeDistribution& of, double max)

@@ -15,12 +15,12 @@ namespace {
 
 using Gauss = boost::math::quadrature::gauss<double, 7>;
 
-/// Pieces no wider than this ratio: there r^k of any moment is as good as a polynomial of degree 13.
+/// Largest ratio of a piece's ends: within it r^k of any moment is as good as a polynomial of degree 13.
 constexpr double widest = 1.5;
-/// Two halves that agree with the whole to this are themselves right to some roundoffs, because halving the
-/// width divides the error by 2^14.
+/// Two halves that agree with the whole to this are accurate to some roundoffs, because halving the width
+/// divides the error by 2^14.
 constexpr double agreement = 1e-12;
-/// Of all, what is too little to look at: rounding.
+/// Negligible share of the whole: rounding.
 constexpr double nothing = 1e-16;
 constexpr int most_halvings = 16;
 
@@ -66,7 +66,7 @@ class Density final : public SizeDistribution {
   double quantile(double p) const override {
     if (p <= 0) return min();
     if (p >= 1) return max();
-    // The last piece that begins below p holds it.
+    // The last piece that begins below p contains it.
     const auto reaches = [](const Piece& piece, double value) { return piece.below < value; };
     const Piece& piece = *std::prev(std::lower_bound(pieces_.begin(), pieces_.end(), p, reaches));
     const double wanted = p - piece.below;
@@ -100,7 +100,7 @@ class Density final : public SizeDistribution {
                             [](double value, const Piece& piece) { return value < piece.a; });
   }
 
-  /// Where the probability from the piece's beginning would be `wanted` if its density were linear.
+  /// The point at which the probability from the start of the piece would be `wanted` for a linear density.
   static double guess(const Piece& piece, double wanted) {
     const double width = piece.b - piece.a, rise = (piece.density_b - piece.density_a) / width;
     const double root = std::sqrt(std::max(0.0, piece.density_a * piece.density_a + 2 * rise * wanted));
@@ -115,7 +115,7 @@ class Density final : public SizeDistribution {
 
   double probability(double a, double b) const { return integral(0, a, b) / total_; }
 
-  /// Of all pieces from the i-th on.
+  /// Over all pieces from the i-th on.
   double whole_from(int k, std::size_t i) const {
     if (k >= 0 && k < static_cast<int>(above_.size())) return above_[static_cast<std::size_t>(k)][i];
     double sum = 0;
@@ -123,7 +123,7 @@ class Density final : public SizeDistribution {
     return sum;
   }
 
-  /// The breaks, and more between them.
+  /// The breaks, with more between them.
   static std::vector<double> cut(const std::vector<double>& breaks) {
     std::vector<double> limits = {breaks.front()};
     for (std::size_t i = 1; i < breaks.size(); ++i) {
@@ -136,7 +136,7 @@ class Density final : public SizeDistribution {
     return limits;
   }
 
-  /// Adds the pieces of [a, b], where the density integrates to `whole`; none where it is zero.
+  /// Adds the pieces of [a, b], over which the density integrates to `whole`; none if it is zero.
   void halve(double a, double b, double whole, double tolerance, int halvings) {
     const double middle = a + 0.5 * (b - a);
     const double left = integral(0, a, middle), right = integral(0, middle, b);
@@ -152,7 +152,7 @@ class Density final : public SizeDistribution {
   std::function<double(double)> density_;
   std::vector<Piece> pieces_;
   double total_ = 1;
-  /// above_[k][i]: the integral of r^k over the pieces from the i-th on, for the moments in daily use.
+  /// above_[k][i]: the integral of r^k over the pieces from the i-th on, for the frequently used moments.
   std::array<std::vector<double>, 7> above_;
 };
 

@@ -8,16 +8,16 @@
 
 namespace bernal {
 
-/// What a density by volume is divided by to be one by number.
+/// Converts a density by volume to one by number when divided by it.
 inline double cube(double r) { return r * r * r; }
 
-/// A distribution that is known by its number density alone, in any scale. `density` is smooth and not
-/// negative inside each interval between neighbouring `breaks`, which are positive, ascending and at least
-/// two; where the density has a feature much narrower than an interval, a break has to mark it.
+/// A distribution given by its number density, in any scale. `density` is smooth and not negative within each
+/// interval between neighbouring `breaks`, which are positive, ascending and at least two; a feature of the
+/// density much narrower than an interval needs a break.
 ///
 /// Probabilities and moments are integrals by Gauss–Legendre quadrature, 7 points on pieces that are halved
-/// until that changes nothing: right to some roundoffs. Quantiles are their roots, by Newton's method.
-/// Cost in values of the density: 100 and more an interval to make, 7 a cumulative, about 24 a quantile.
+/// until the result converges: accurate to some roundoffs. Quantiles are their roots, by Newton's method.
+/// Cost in values of the density: at least 100 an interval to make, 7 a cumulative, about 24 a quantile.
 /// Throws Error{bad_argument} if the density is zero everywhere or not finite somewhere.
 std::unique_ptr<SizeDistribution> make_from_density(std::string_view name,
                                                     std::function<double(double)> density,

@@ -7,8 +7,8 @@
 
 namespace bernal {
 
-/// All radii of another distribution, each by the same length larger: R = r + by, by >= 0, rounded up. The
-/// other one outlives it. Moments by the binomial theorem, <R^k> = Σ_j C(k, j) by^(k-j) <r^j>; k >= 0.
+/// Another distribution with all radii larger by the same length: R = r + by, by >= 0, rounded up. The other
+/// must outlive it. Moments by the binomial theorem, <R^k> = Σ_j C(k, j) by^(k-j) <r^j>; k >= 0.
 class Enlarged final : public SizeDistribution {
  public:
   Enlarged(const SizeDistribution& of, double by)

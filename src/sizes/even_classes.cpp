@@ -8,9 +8,9 @@
 namespace bernal {
 namespace {
 
-/// Of a turn: many times what rounding does to it in 2^31 draws, and far below 1.
+/// Relative to a turn: far more than its rounding error after 2^31 draws, and far below 1.
 constexpr double rounding_of_turns = 1e-6;
-/// Of the sum of all shares.
+/// Relative to the sum of all shares.
 constexpr double rounding_of_shares = 1e-9;
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 /// Probability that a standard normal variable is below z.
 double normal_below(double z) { return 0.5 * boost::math::erfc(-z / std::numbers::sqrt2); }
 
-/// Probability that it lies in [a, b]; without cancellation in either tail.
+/// Probability of [a, b], without cancellation in either tail.
 double normal_between(double a, double b) {
   return a > 0 ? normal_below(-a) - normal_below(-b) : normal_below(b) - normal_below(a);
 }
@@ -44,7 +44,7 @@ class Lognormal final : public SizeDistribution {
   double quantile(double p) const override {
     if (p <= 0) return min();
     if (p >= 1) return max();
-    // From whichever tail is nearer, where probabilities are small and so precise.
+    // From the nearer tail, where probabilities are small and so precise.
     const double below = normal_below(alpha_) + p * mass_;
     const double above = normal_below(-beta_) + (1 - p) * mass_;
     const double z = below < above ? normal_quantile(below) : -normal_quantile(above);
@@ -77,7 +77,7 @@ std::unique_ptr<SizeDistribution> make_lognormal(double median, double sigma, Ba
   if (!(min >= 0 && min < max))
     throw Error(ErrorCode::bad_argument,
                 fmt::format("the radii are cut to [{}, {}], which is no interval", min, max));
-  // A volume distribution weighs the number density with r³, which keeps sigma and moves the median.
+  // A distribution by volume is the number density times r³, with the same sigma and another median.
   const double mu = std::log(median) - (basis == Basis::volume ? 3 * sigma * sigma : 0);
   auto lognormal = std::make_unique<Lognormal>(mu, sigma, min, max);
   if (!(lognormal->mass() > 0))

@@ -11,10 +11,11 @@
 namespace bernal {
 namespace {
 
-/// The smallest double r with f(r) >= p, for a nondecreasing f that may jump and rest, f(low) < p <= f(high).
+/// The smallest double r with f(r) >= p, for a nondecreasing f with jumps and plateaus, f(low) < p <=
+/// f(high).
 template <class F>
 double first_reaching(F f, double p, double low, double high) {
-  // Where f rests at p any point would be a root, so none may look like one.
+  // On a plateau at p any point would be a root, so none may look like one.
   const auto excess = [&](double r) {
     const double above = f(r) - p;
     return above == 0 ? std::numeric_limits<double>::min() : above;
@@ -31,11 +32,11 @@ double first_reaching(F f, double p, double low, double high) {
 
 struct Part {
   std::unique_ptr<SizeDistribution> sizes;
-  double share;  ///< of the number; all shares add up to 1
-  double up_to;  ///< share of this part and all before it
+  double share;  ///< of the number; all shares sum to 1
+  double up_to;  ///< sum of the shares up to this part
 };
 
-/// F = Σ share F_part, and so are the moments.
+/// F = Σ share F_part; the same for moments.
 class Mixture final : public SizeDistribution {
  public:
   explicit Mixture(std::vector<Part> parts) : parts_(std::move(parts)) {
@@ -82,7 +83,7 @@ class Mixture final : public SizeDistribution {
     return radii;
   }
 
-  /// The part that u falls to, and there the radius of what is left of u. No root to be found.
+  /// The part that contains u, and its radius at the rest of u. No root finding.
   double radius_at(double u) const override {
     const auto before = [](const Part& part, double value) { return part.up_to <= value; };
     auto part = std::lower_bound(parts_.begin(), parts_.end(), u, before);
@@ -113,8 +114,7 @@ std::unique_ptr<SizeDistribution> make_mixture(std::vector<std::unique_ptr<SizeD
   double total = 0;
   for (std::size_t i = 0; i < of.size(); ++i) {
     require_positive("the share of a part of a mixture", shares[i]);
-    // As many spheres as volume over the mean volume of one; relative to the first, so that nothing
-    // overflows.
+    // Numbers are volumes over mean sphere volumes; relative to the first, so that nothing overflows.
     if (basis == Basis::volume) shares[i] *= of.front()->moment(3) / of[i]->moment(3);
     total += shares[i];
   }

@@ -9,7 +9,7 @@
 namespace bernal {
 namespace {
 
-/// Deviations from the mean beyond which 2e-9 of a normal distribution lies: one sphere of five hundred
+/// Deviations from the mean beyond which 2e-9 of a normal distribution lies: one sphere in five hundred
 /// million.
 constexpr double nothing_beyond = 6;
 

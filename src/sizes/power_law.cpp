@@ -7,11 +7,11 @@
 namespace bernal {
 namespace {
 
-/// The number density is proportional to r^(n-1) on [a, b]: n = 1 is uniform by number; where the share of
-/// the volume below r grows as r^q, n is q - 3, because a sphere's volume grows as r³; q = 0 is its limit, ln
-/// r. Preconditions: 0 < a < b, finite. With l = ln(b / a) and g(n) = (e^(n l) - 1) / n,
+/// The number density is proportional to r^(n-1) on [a, b]. n = 1 is uniform by number; if the share of the
+/// volume below r grows as r^q, n is q - 3, because a sphere's volume grows as r³; the limit q = 0 is ln r.
+/// Preconditions: 0 < a < b, finite. With l = ln(b / a) and g(n) = (e^(n l) - 1) / n,
 ///   F(r) = (e^(n ln(r/a)) - 1) / (e^(n l) - 1),   <r^k> = a^k g(n + k) / g(n);
-/// the same with r for a, times (r/a)^n, is what radii above r contribute.
+/// the same with r for a, times (r/a)^n, is the contribution of radii above r.
 class PowerLaw final : public SizeDistribution {
  public:
   PowerLaw(double a, double b, double n)

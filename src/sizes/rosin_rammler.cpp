@@ -9,7 +9,7 @@
 namespace bernal {
 namespace {
 
-/// Of the volume, what lies above the upper cut where the user names none.
+/// Share of the volume above the default upper limit.
 constexpr double volume_above = 1e-3;
 
 }  // namespace
@@ -26,8 +26,8 @@ std::unique_ptr<SizeDistribution> make_rosin_rammler(double r63, double n, doubl
                               100 * volume_above));
   }
   require_interval(min, max);
-  // Volume density n x^(n-1) e^(-x^n) with x = r / r63, over r³; scaled to 1 at the cut that is nearer to
-  // r63, or there, so that it neither vanishes nor overflows.
+  // Volume density n x^(n-1) e^(-x^n) with x = r / r63, over r³; scaled to 1 at r63, or at the limit nearest
+  // to it, so that it neither vanishes nor overflows.
   const double scale = std::clamp(r63, min, max);
   const double power_at_scale = std::pow(scale / r63, n);
   const auto density = [=](double r) {

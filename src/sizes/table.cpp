@@ -10,7 +10,7 @@
 namespace bernal {
 namespace {
 
-/// y + t (b + t (c + t d)) on an interval of width h, t from its left end.
+/// y + t (b + t (c + t d)) on an interval of width h, with t from its left end.
 struct Cubic {
   double x;
   double h;
@@ -19,10 +19,10 @@ struct Cubic {
   double at(double t) const { return y + t * (b + t * (c + t * d)); }
 };
 
-/// The natural cubic spline: twice continuously differentiable, no curvature at its ends. The curvatures m at
-/// the points solve, with widths h and slopes s of the intervals,
+/// The natural cubic spline: twice continuously differentiable, with no curvature at its ends. The curvatures
+/// m at the points solve, with widths h and slopes s of the intervals,
 ///   h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (s[i] - s[i-1]),
-/// a diagonally dominant system. Boost's interpolators have no such spline on uneven points.
+/// a diagonally dominant system. Boost has no such spline on uneven points.
 std::vector<Cubic> natural_spline(const std::vector<double>& x, const std::vector<double>& y) {
   const std::size_t intervals = x.size() - 1;
   const auto h = [&](std::size_t i) { return x[i + 1] - x[i]; };
@@ -42,7 +42,7 @@ std::vector<Cubic> natural_spline(const std::vector<double>& x, const std::vecto
   return cubics;
 }
 
-/// Where the cubic changes its sign inside its interval: once at most between two of its extrema.
+/// Sign changes of the cubic within its interval: at most one between two of its extrema.
 std::vector<double> sign_changes(const Cubic& f) {
   std::vector<double> limits = {0};
   const double square = f.c * f.c - 3 * f.b * f.d;
@@ -93,7 +93,7 @@ std::unique_ptr<SizeDistribution> make_table(std::vector<double> radii, std::vec
   breaks.push_back(radii.back());
   const double largest = radii.back();
   const auto density = [=, spline = std::move(spline)](double r) {
-    // Between two radii next to each other a sample may be rounded out of them.
+    // Between two adjacent radii a sample may be rounded out of the interval.
     const auto beyond = std::ranges::upper_bound(spline.begin() + 1, spline.end(), r, {}, &Cubic::x);
     const Cubic& cubic = *std::prev(beyond);
     const double f = std::max(0.0, cubic.at(r - cubic.x));

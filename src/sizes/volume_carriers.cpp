@@ -6,8 +6,8 @@ namespace bernal {
 namespace {
 
 constexpr double few_equal = 1000, few_of_all = 0.1;
-/// Of a radius: what is nearer is one size. And of the volume, so that of two sizes with half of it each the
-/// larger alone holds half.
+/// Relative to a radius: closer ones are one size. Relative to the volume: so that of two sizes with half of
+/// it each the larger alone holds half.
 constexpr double one_size = 1e-9, half_to_rounding = 1e-6;
 
 }  // namespace
@@ -27,7 +27,7 @@ double radius_holding(const SizeDistribution& radii, double share, int dimension
 
 bool few_carry_volume(const SizeDistribution& radii, double count, int dimension) {
   const double share = std::pow(radii.moment(dimension), 2) / radii.moment(2 * dimension);
-  // What is no number comes from sizes that spread too widely for one.
+  // NaN comes from sizes that spread too widely.
   return !(share >= few_of_all) && !(share * count >= few_equal);
 }
 

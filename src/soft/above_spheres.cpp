@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bernal/domain/boundary.hpp"
+#include "bernal/core/boundary.hpp"
 #include "domain/nearest_first.hpp"
 #include "near/cell_layout.hpp"
 #include "soft/below_level.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "bernal/domain/boundary.hpp"
+#include "bernal/core/boundary.hpp"
 #include "core/every_dimension.hpp"
 
 namespace bernal {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// Where a period may begin, and how far from the nearest end of a sphere that is, over its radius.
+/// A candidate start of a period, and its distance from the nearest end of a sphere over the radius.
 struct Place {
   double at, distance;
 };
@@ -23,7 +23,7 @@ double apart(double x, double y, double period) {
   return std::abs(d - period * std::nearbyint(d / period));
 }
 
-/// Something with an extent along an axis: `reach` beyond its middle on both sides. `scale` is its radius.
+/// The extent of an object along an axis: `reach` on both sides of its middle. `scale` is its radius.
 struct Extent {
   double middle, reach, scale;
 };
@@ -39,7 +39,7 @@ std::vector<Extent> extents_along(int axis, const Spheres<dynamic>& spheres,
   return extents;
 }
 
-/// The middles of the widest gaps between where spheres begin and end along an axis, the widest first.
+/// The middles of the widest gaps between extents along an axis, the widest first.
 std::vector<Place> places_along(int axis, const std::vector<Extent>& extents, const Boundary<3>& boundary,
                                 std::size_t most) {
   const double lower = boundary.origin[axis], period = boundary.edges[axis];
@@ -66,8 +66,8 @@ std::vector<Place> places_along(int axis, const std::vector<Extent>& extents, co
   return gaps;
 }
 
-/// From the edge where the first two axes of `axes` begin, or the corner of all three, to the nearest
-/// sphere's surface, over the radius.
+/// Distance from the edge where the first two axes of `axes` begin, or the corner of all three, to the
+/// nearest sphere's surface, over the radius.
 double distance_from(const Spheres<dynamic>& spheres, const Boundary<3>& boundary,
                      std::initializer_list<std::pair<int, double>> axes) {
   double least = unlimited;
@@ -87,10 +87,10 @@ struct Ends {
   double distance;
 };
 
-/// Of all places the three that are best together: a place an axis, edges where two axes repeat themselves.
+/// The best combination of one place an axis, with edges where two axes are periodic.
 Ends best_of(const std::array<std::vector<Place>, 3>& places, const Spheres<dynamic>& spheres,
              const Boundary<3>& boundary) {
-  std::array<std::vector<double>, 3> edges;  // of the axes but this one, its successor's places fastest
+  std::array<std::vector<double>, 3> edges;  // of the other two axes, the successor's places fastest
   for (int k = 0; k < 3; ++k) {
     const int a = (k + 1) % 3, b = (k + 2) % 3;
     for (const Place& pb : places[static_cast<std::size_t>(b)])
@@ -124,7 +124,7 @@ ClearEnds with_clear_ends(const Spheres<dynamic>& spheres, const Domain& domain,
                           const std::vector<Bridge>& bridges) {
   const Boundary<3> boundary = boundary_of<3>(domain);
   if (!boundary.repeats() || spheres.empty()) return {domain, unlimited};
-  // As many places as keep the work for edges at some million distances.
+  // Limits the places so that the work for edges is some million distances.
   const auto n = static_cast<double>(spheres.size());
   const auto most = static_cast<std::size_t>(std::clamp(std::sqrt(1e7 / n), 4.0, 40.0));
   std::array<std::vector<Place>, 3> places;

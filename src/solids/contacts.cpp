@@ -16,7 +16,7 @@
 namespace bernal {
 namespace {
 
-/// By how much each radius has to be multiplied, and what asks for it.
+/// The factor for each radius, and the numbers of pairs and walls that require it.
 struct Factors {
   std::vector<double> of;
   std::size_t pairs = 0, walls = 0;
@@ -49,8 +49,8 @@ std::string number_of(std::size_t n, std::string_view one, std::string_view more
   return fmt::format("{} {}", grouped(n), n == 1 ? one : more);
 }
 
-/// What a mesher makes of the sharp corners at the rims does not get better with smaller elements.
-std::string words_on_necks(const ContactReport& report) {
+/// Smaller elements do not improve the mesh at the sharp corners of rims.
+std::string necks_text(const ContactReport& report) {
   return (report.walls == 0 ? std::string()
                             : fmt::format("; {} as near stay as they are",
                                           number_of(report.walls, "place of walls", "places of walls"))) +
@@ -74,7 +74,7 @@ double volume_of_balls(const Spheres<dynamic>& spheres) {
 }
 
 bool has_gap(const Spheres<dynamic>& spheres, const Domain& domain, double gap, const Monitor& monitor) {
-  // Above the product: 1 + gap and the product are each off by one roundoff, the last factor by another.
+  // Above the product: 1 + gap and the product have one roundoff each, the last factor another.
   constexpr double above = 1 + 8 * tolerance::roundoff;
   Spheres<dynamic> grown = spheres;
   for (double& r : grown.r) r = r * (1 + gap) * above;
@@ -112,7 +112,7 @@ ContactReport shrink_contacts(Spheres<dynamic>& spheres, const Domain& domain, C
         spheres.r[i] = 0.5 * at_most(2 * before[i] * factors.of[i] * (1 - margin), single);
     margin *= 16;
     if (margin > 1e3 * first_margin) {
-      // Whoever stands at the gap to within rounding may turn out to be nearer; strangers stay.
+      // Spheres at the gap to within rounding may be closer than it; others do not change.
       const Factors near = factors_of(untouched, domain, (1 + gap) * (1 + margin) - 1);
       for (std::size_t i = 0; i < before.size(); ++i)
         if (near.of[i] < 1) factors.of[i] = std::min(factors.of[i], 1 - margin);
@@ -129,7 +129,7 @@ ContactReport shrink_contacts(Spheres<dynamic>& spheres, const Domain& domain, C
   return report;
 }
 
-std::string words_on(const ContactReport& report) {
+std::string contact_text(const ContactReport& report) {
   const std::string porosity =
       fmt::format("porosity {}{:+.3g}", report.meetings == 0 ? "" : "about ", report.change_of_porosity());
   switch (report.treatment) {
@@ -151,7 +151,7 @@ std::string words_on(const ContactReport& report) {
           report.meetings == 0
               ? std::string("none meets a third sphere or another bridge")
               : fmt::format("{} a third sphere or each other", number_of(report.meetings, "meets", "meet")),
-          report.smallest_angle, words_on_necks(report));
+          report.smallest_angle, necks_text(report));
     case ContactTreatment::cap:
       return fmt::format(
           "caps cut off {} at {} and {}, flat faces {:.6g} in all where only points touched, {}{}; {}",

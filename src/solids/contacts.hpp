@@ -9,24 +9,23 @@
 
 namespace bernal {
 
-/// What was done about contacts, and what is there now. Gaps are ratios: of two spheres over the sum of their
-/// radii, of a sphere and a wall over the radius.
+/// The treatment of contacts and its result. Gaps are ratios: for two spheres over the sum of their radii,
+/// for a sphere and a wall over the radius.
 struct ContactReport {
   ContactTreatment treatment = ContactTreatment::none;
-  double gap = 0;             ///< asked for
-  std::size_t spheres = 0;    ///< in all
-  std::size_t changed = 0;    ///< of these
-  std::size_t pairs = 0;      ///< that were nearer than the gap, of spheres and images
-  std::size_t walls = 0;      ///< places of the wall that were nearer to a sphere than the gap
-  double largest_change = 0;  ///< of a radius, over the radius
-  double volume_before = 0, volume_after = 0;  ///< of all solids, each once
+  double gap = 0;                              ///< as requested
+  std::size_t spheres = 0;                     ///< all spheres
+  std::size_t changed = 0;                     ///< spheres that were changed
+  std::size_t pairs = 0;                       ///< pairs closer than the gap, images included
+  std::size_t walls = 0;                       ///< places on the wall closer to a sphere than the gap
+  double largest_change = 0;                   ///< of a radius, over the radius
+  double volume_before = 0, volume_after = 0;  ///< of all solids, each counted once
   double domain_volume = 0;
-  double contact_area = 0;    ///< of bridges: their cross-sections; of caps: the flat faces
-  double smallest_angle = 0;  ///< between the surfaces that meet at the rim of a bridge, in degrees
-  /// Caps: how many of one sphere meet another of the same. Bridges: how many meet a third sphere or each
-  /// other.
+  double contact_area = 0;    ///< bridges: their cross-sections; caps: the flat faces
+  double smallest_angle = 0;  ///< between surfaces at the rim of a bridge, in degrees
+  /// Caps: how many meet another on the same sphere. Bridges: how many meet a third sphere or each other.
   std::size_t meetings = 0;
-  /// The gap that was proven in exact arithmetic, see `solids_of`; 0 where none was.
+  /// The gap proven in exact arithmetic, see `solids_of`; 0 if none.
   double proven_gap = 0;
 
   double change_of_porosity() const {
@@ -34,26 +33,25 @@ struct ContactReport {
   }
 };
 
-/// One line for people.
-std::string words_on(const ContactReport&);
+/// The report in one line.
+std::string contact_text(const ContactReport&);
 
-/// How far radii have to fall. gap: each to r_i · min(1, min_j d_ij / ((1 + gap)(r_i + r_j)), clearance_i /
-/// ((1 + gap) r_i)): both spheres of a pair by one factor, and each as far as the nearest of its neighbours
-/// asks for; that depends on no order, and leaves spheres that are nobody's neighbour as they are. shrink:
-/// all by the least of these factors. Then, proven by the certificate of spheres of radius r (1 + gap),
-/// rounded up: |ci - cj| >= (1 + gap)(ri + rj) for all pairs and images, clearance >= (1 + gap) r. Where
-/// rounding got in the way, those that have changed lose some roundoffs more. `single`: diameters stay in
-/// single precision.
+/// Shrinks radii until the gap is kept. gap: each to r_i · min(1, min_j d_ij / ((1 + gap)(r_i + r_j)),
+/// clearance_i / ((1 + gap) r_i)): both spheres of a pair by one factor, and each as far as its nearest
+/// neighbour requires; the result does not depend on an order, and isolated spheres do not change. shrink:
+/// all by the least of these factors. Then the certificate of spheres of radius r (1 + gap), rounded up,
+/// proves |ci - cj| >= (1 + gap)(ri + rj) for all pairs and images, and clearance >= (1 + gap) r. If rounding
+/// prevents this, changed spheres lose some more roundoffs. `single`: diameters stay in single precision.
 ///
-/// Precondition: treatment is gap or shrink. Throws Error{bad_argument} for spheres whose centres are outside
-/// the walls or coincide, Cancelled. Cost: O(N), that of two certificates, and a container's for a mesh.
+/// Precondition: treatment is gap or shrink. Throws Error{bad_argument} if spheres have centres outside the
+/// walls or coincident centres, Cancelled. Cost: O(N), two certificates, and a container for a mesh.
 ContactReport shrink_contacts(Spheres<dynamic>&, const Domain&, ContactTreatment, double gap, bool single,
                               const Monitor& monitor = {});
 
 /// Whether |ci - cj| >= (1 + gap)(ri + rj) for all pairs and images and clearance >= (1 + gap) r: exact.
 bool has_gap(const Spheres<dynamic>&, const Domain&, double gap, const Monitor& monitor = {});
 
-/// Of whole balls of any dimension.
+/// Total volume of whole balls of any dimension.
 double volume_of_balls(const Spheres<dynamic>&);
 
 }  // namespace bernal

@@ -13,7 +13,7 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Chains edges, each given by where it begins and ends, to loops; empty if one passes a corner twice.
+/// Chains directed edges to loops; empty if a loop passes a corner twice.
 std::vector<std::vector<std::uint32_t>> loops_of(const std::vector<Edge>& edges) {
   std::map<std::uint32_t, std::uint32_t> next;
   for (const auto& [from, to] : edges)
@@ -31,7 +31,7 @@ std::vector<std::vector<std::uint32_t>> loops_of(const std::vector<Edge>& edges)
   return loops;
 }
 
-/// Twice the area that a loop goes around, against the normal's sense if negative.
+/// Twice the area inside a loop, negative if it runs against the normal's sense.
 double area_around(const Mesh& mesh, const std::vector<std::uint32_t>& loop, const Vector<3>& normal) {
   Vector<3> sum = Vector<3>::Zero();
   const Vector<3>& first = mesh.vertices[loop.front()];

@@ -19,10 +19,10 @@ class Places {
         per_gap_(per_gap) {}
 
   std::vector<NarrowPlace> made() && { return std::move(places_); }
-  /// The widest gap between two spheres that asks for smaller elements, over the sum of their radii.
+  /// The widest gap between two spheres that needs smaller elements, over the sum of their radii.
   double widest() const { return 0.5 * per_radius_ / per_gap_; }
 
-  /// `curvature` is that of the width, 1/r: g + d²/r. `flat`: the radius within which it is constant.
+  /// The width is g + curvature d², with curvature 1/r. `flat`: the radius within which it is constant.
   void add(const Vector<3>& point, const Vector<3>& normal, double gap, double curvature, double radius,
            double flat) {
     const double beside = per_radius_ * radius, wide = beside / per_gap_ - gap;
@@ -99,7 +99,7 @@ void add_at_walls(const Solids& solids, Places& places) {
   }
 }
 
-/// Where an end of a period nearly touches a sphere: a thin cap on one side, a thin gap on the other.
+/// Where an end of a period nearly touches a sphere there is a thin cap on one side, a thin gap on the other.
 void add_at_ends(const Solids& solids, Places& places) {
   const Boundary<3> boundary = boundary_of<3>(solids.domain);
   for (std::size_t i = 0; i < solids.spheres.size(); ++i)

@@ -6,13 +6,13 @@
 namespace bernal {
 namespace {
 
-/// Where one of three axes ends and begins anew.
+/// The extent of one of three axes.
 struct Period {
   double lower, upper, length;
 };
 
 /// Whether the open ball reaches into the open period along all axes: its centre is nearer than its radius to
-/// some point of that.
+/// a point of the period.
 bool reaches_in(const Piece& piece, const std::array<Period, 3>& periods) {
   double squared = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -44,7 +44,7 @@ std::vector<Piece> pieces_of(const Spheres<dynamic>& spheres, const Domain& doma
     if (boundary.repeats(k))
       periods[static_cast<std::size_t>(k)] = {boundary.origin[k], boundary.origin[k] + boundary.edges[k],
                                               boundary.edges[k]};
-  // The image in the period first, then those before and behind it.
+  // The image in the period first, then its neighbours.
   constexpr std::array<int, 3> moves = {0, 1, -1};
   const auto moves_along = [&](std::size_t axis) { return periods[axis].length > 0 ? 3u : 1u; };
 

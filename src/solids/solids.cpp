@@ -13,18 +13,17 @@
 #include "measure/touching.hpp"
 #include "near/point_grid.hpp"
 #include "verify/exact.hpp"
-#include "voxels/ball_in_cells.hpp"
 
 namespace bernal {
 namespace {
 
-/// A cap of a sphere, in its own frame: what lies beyond normal·p = depth.
+/// A cap of a sphere, in its own frame: the part beyond normal·p = depth.
 struct Cap {
   Vector<3> normal;
   double depth;
 };
 
-/// Two spheres that are near each other, and where the second stands as seen from the first.
+/// Two near spheres, with the direction to the second.
 struct Bond {
   std::uint32_t first, second;
   Vector<3> direction;  ///< unit
@@ -44,8 +43,8 @@ double angle_between(const Vector<3>& a, const Vector<3>& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// How many pairs of circles on one sphere meet; each circle is given by its centre's direction and its
-/// angular radius.
+/// The number of pairs of circles on one sphere that meet; a circle is given by the direction of its centre
+/// and its angular radius.
 struct Circle {
   Vector<3> direction;
   double angle;
@@ -64,7 +63,7 @@ double roundings_at(const Spheres<dynamic>& spheres, std::uint32_t i) {
   return 64 * tolerance::roundoff * (spheres.center(i).norm() + spheres.r[i]);
 }
 
-/// Caps at walls. Round walls come nearer beside the point where they are nearest: then the cap is deeper.
+/// Caps at walls. Round walls are nearer beside the nearest point: then the cap is deeper.
 void add_wall_caps(const Spheres<dynamic>& spheres, const Domain& domain, double gap,
                    std::vector<std::vector<Cap>>& caps, ContactReport& report) {
   if (!has_walls(domain)) return;
@@ -125,7 +124,8 @@ std::vector<std::vector<Cap>> caps_of(const Spheres<dynamic>& spheres, const Dom
   return caps;
 }
 
-/// The planes of two pieces, whose normals are opposite to the last bit, lie at least `width` apart: exact.
+/// Whether the planes of two pieces, with exactly opposite normals, are at least gap times the sum of radii
+/// apart: exact.
 bool are_apart(const HalfSpace& a, const HalfSpace& b, double gap, double sum_of_radii) {
   using verify::Exact;
   const Exact between = Exact(0) - Exact(a.offset) - Exact(b.offset);
@@ -135,8 +135,8 @@ bool are_apart(const HalfSpace& a, const HalfSpace& b, double gap, double sum_of
          at_least(square(between), square(width) * squared) == verify::Truth::yes;
 }
 
-/// Gives every piece the caps of its sphere, and proves them disjoint: for every two pieces that face each
-/// other. Of pieces that stand on opposite sides of a period the images are not in the domain together.
+/// Gives every piece the caps of its sphere, and proves them disjoint for every two pieces that face each
+/// other. Of pieces on opposite sides of a period the images are not in the domain together.
 bool add_caps(const std::vector<std::vector<Cap>>& caps, const Spheres<dynamic>& spheres,
               const std::vector<Bond>& bonds, double gap, std::vector<Piece>& pieces) {
   std::vector<std::vector<std::size_t>> of_sphere(spheres.size());
@@ -195,16 +195,16 @@ double distance_to_segment(const Vector<3>& p, const Vector<3>& from, const Vect
   return (p - from - along * span).norm();
 }
 
-/// How many spheres other than the two that it joins a bridge meets.
-std::size_t thirds_met(const Spheres<3>& spheres, const PointGrid<3>& grid, const Boundary<3>& boundary,
-                       double largest, const Bridge& bridge) {
+/// The number of spheres besides its own two that a bridge meets.
+std::size_t third_spheres_met(const Spheres<3>& spheres, const PointGrid<3>& grid,
+                              const Boundary<3>& boundary, double largest, const Bridge& bridge) {
   const Vector<3> middle = 0.5 * (bridge.rims[0] + bridge.rims[1]), at = boundary.wrap(middle);
   const double half = 0.5 * (bridge.rims[1] - bridge.rims[0]).norm();
   std::size_t met = 0;
   grid.for_each_near(at, half + bridge.radius + largest, [&](std::uint32_t k, const Vector<3>& d) {
     const double r = spheres.r[k];
     if (k == bridge.spheres[0] || k == bridge.spheres[1]) {
-      // The two themselves reach the rims, all but to rounding; images of them come no nearer than others.
+      // Its own two reach the rims, to rounding; their images come no nearer than other spheres.
       const double rim = std::sqrt(std::max(0.0, r * r - bridge.radius * bridge.radius));
       for (const Vector<3>& end : bridge.rims)
         if (std::abs((d - (end - middle)).norm() - rim) < 1e-6 * r) return;
@@ -225,7 +225,7 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
   std::vector<Bridge> bridges;
   std::vector<std::vector<Circle>> circles(spheres.size());
   report.smallest_angle = 180;
-  constexpr double rounding = 1e-9;  // far above that of coordinates, far below what CAD tells apart
+  constexpr double rounding = 1e-9;  // far above that of coordinates, far below the resolution of CAD
   for (const Bond& bond : bonds) {
     if (bond.gap < -rounding)
       throw Error(ErrorCode::bad_argument,
@@ -246,7 +246,7 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
       report.smallest_angle = std::min(report.smallest_angle, 90 + std::asin(a / r) * 180 / std::numbers::pi);
     circles[bond.first].push_back({bond.direction, std::asin(a / ri)});
     circles[bond.second].push_back({-bond.direction, std::asin(a / rj)});
-    report.meetings += thirds_met(spheres, grid, boundary, largest, bridge);
+    report.meetings += third_spheres_met(spheres, grid, boundary, largest, bridge);
     add_images(bridge, boundary, bridges);
   }
   report.meetings += meetings_on(circles);
@@ -258,17 +258,6 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
 
 double cap_volume(double radius, double height) {
   return std::numbers::pi / 3 * height * height * (3 * radius - height);
-}
-
-double volume_between_ends(const Piece& piece) {
-  Bounds<3> box{piece.center - Vector<3>::Constant(2 * piece.radius),
-                piece.center + Vector<3>::Constant(2 * piece.radius)};
-  for (const Cut& cut : piece.cuts) {
-    if (cut.face == Cut::contact) continue;
-    const int axis = cut.face / 2;
-    (cut.face % 2 == 0 ? box.lower : box.upper)[axis] = cut.keeps.normal[axis] * cut.keeps.offset;
-  }
-  return ball_in_box(piece.center, piece.radius, box);
 }
 
 Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const SolidsOptions& options,
@@ -286,11 +275,11 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   }
   const ClearEnds ends = with_clear_ends(made.spheres, domain, bridges);
   made.end_distance = ends.distance;
-  if (options.move_ends) made.domain = ends.domain;
+  made.domain = ends.domain;
   wrap(made.spheres, made.domain);
   made.pieces = pieces_of(made.spheres, made.domain);
   if (shrinks) {
-    // Images that were moved have been rounded: what was proven is proven again.
+    // Moved images were rounded, so the gap is proven again.
     if (!has_gap(made.spheres, made.domain, options.gap, monitor)) {
       ContactReport again =
           shrink_contacts(made.spheres, made.domain, options.contact, options.gap, false, monitor);

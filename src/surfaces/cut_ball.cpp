@@ -10,16 +10,16 @@
 namespace bernal {
 namespace {
 
-/// Of the longest edge: nearer corners come to lie on the plane.
+/// Relative to the longest edge: nearer corners are moved onto the plane.
 constexpr double snap_distance = 0.2;
-/// Of the height that the largest triangle leaves.
+/// Relative to the height of the cap that the largest triangle leaves.
 constexpr double least_cap_share = 1.25;
 
 bool comes_before(const Vector<3>& a, const Vector<3>& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-/// With one plane more, in order; nothing where there are three already.
+/// Adds a plane in order; absent if there are three already.
 std::optional<CutBall::Corner> also_on(CutBall::Corner corner, int plane) {
   const int n = corner.count();
   if (n == 3) return std::nullopt;
@@ -42,8 +42,8 @@ CutBall::CutBall(int frequency, double radius, const std::vector<BallPlane>& pla
     : radius_(radius), planes_(planes) {
   const Icosphere& whole = icosphere(frequency);
   least_cap_ = least_cap_share * (1 - whole.inradius) * radius;
-  // A triangle whose corners are on the sphere and which leaves a cap of that height has edges of about
-  // sqrt(6 height) radii.
+  // A triangle with corners on the sphere that leaves a cap of that height has edges of about sqrt(6 height)
+  // radii.
   edge_ = std::sqrt(6 * (1 - whole.inradius)) * radius;
   for (const Vector<3>& v : whole.vertices) corners_.push_back({radius * v});
   for (const auto& [a, b, c] : whole.triangles) faces_.push_back({-1, {a, b, c}});
@@ -53,7 +53,7 @@ double CutBall::height(const Vector<3>& place, const BallPlane& plane) {
   return plane.normal.dot(place) - plane.offset;
 }
 
-/// Whether it stays on its side of all planes that have been cut and that it does not lie on.
+/// Whether the corner stays on its side of all planes of earlier cuts that it does not lie on.
 bool CutBall::may_move(const Corner& from, const Vector<3>& to) const {
   return std::ranges::all_of(done_, [&](int number) {
     const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
@@ -61,8 +61,8 @@ bool CutBall::may_move(const Corner& from, const Vector<3>& to) const {
   });
 }
 
-/// Where the corner comes to lie on all its planes and, if these leave it free, on the sphere. Nothing where
-/// the planes do not meet within the sphere.
+/// The position of the corner on all its planes and, if these leave a degree of freedom, on the sphere.
+/// Absent if the planes do not meet within the sphere.
 std::optional<Vector<3>> CutBall::placed(const Corner& corner) const {
   const int n = corner.count();
   Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> normals(n, 3);
@@ -87,18 +87,18 @@ std::optional<Vector<3>> CutBall::placed(const Corner& corner) const {
     if (!(left > 0) || !(length > 1e-9 * radius_)) return std::nullopt;
     if (n == 1) {
       place += std::sqrt(left) / length * within;
-    } else {  // one of two points, whichever corner comes there
+    } else {  // one of two points, independent of the corner's path
       const Vector<3> along = normals.row(0).cross(normals.row(1)).normalized();
       place += (within.dot(along) < 0 ? -1 : 1) * std::sqrt(left) * along;
     }
   }
-  for (int k = 0; k < n; ++k)  // planes across an axis have exactly one value of it
+  for (int k = 0; k < n; ++k)  // exact coordinate for planes normal to an axis
     for (int axis = 0; axis < 3; ++axis)
       if (normals.row(k) == Vector<3>::Unit(axis).transpose()) place[axis] = offsets[k];
   return place;
 }
 
-/// All that stands beyond the plane, a tip, comes to lie a little below it.
+/// Pushes a tip beyond the plane slightly below it.
 void CutBall::push_in(const BallPlane& plane, bool below) {
   const double side = below ? 1 : -1, limit = -0.25 * least_cap_;
   for (Corner& corner : corners_) {
@@ -110,16 +110,15 @@ void CutBall::push_in(const BallPlane& plane, bool below) {
   }
 }
 
-/// Corners near the plane come to lie on it, as long as one is left beyond it of a ball that the plane cuts:
-/// the nearest to the pole stands no deeper than the largest triangle leaves. Of a face that would lie in the
-/// plane as a whole, and belong to neither half, the farthest one stays where it is. Where on one side
-/// nothing is left of a ball that other planes have cut, those that lie on no other plane go back, a little
-/// below it.
+/// Moves corners near the plane onto it, as long as one is left beyond it of a ball that the plane cuts: the
+/// nearest to the pole is no deeper than the largest triangle leaves. If a whole face would lie in the plane
+/// and belong to neither half, its farthest corner stays. If nothing is left on one side of a ball with
+/// earlier cuts, corners on no other plane are moved back, slightly below it.
 void CutBall::snap(int number) {
   const BallPlane& plane = planes_[static_cast<std::size_t>(number)];
   const double cap = radius_ - std::abs(plane.offset), left = least_cap_ / least_cap_share;
   const double near = std::min(snap_distance * edge_, 0.5 * (cap - left));
-  std::map<std::uint32_t, Corner> moved_alone;  // from where, of those that lie on no other plane
+  std::map<std::uint32_t, Corner> moved_alone;  // original positions of corners on no other plane
   for (std::uint32_t v = 0; v < corners_.size(); ++v) {
     Corner& corner = corners_[v];
     std::optional<Corner> moved =
@@ -211,7 +210,7 @@ bool CutBall::cut(int number, bool below) {
   return empty() || close(number);
 }
 
-/// Adds the faces in the plane: their edges are those that a kept face has and no other one.
+/// Adds the faces in the plane: their edges belong to a single kept face.
 bool CutBall::close(int number) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const Face& face : faces_)
@@ -246,7 +245,7 @@ std::vector<std::array<std::uint32_t, 3>> CutBall::triangles_of(const Face& face
   std::vector<std::array<std::uint32_t, 3>> made;
   std::vector<std::uint32_t> ring = face.corners;
   const auto place = [&](std::uint32_t v) -> const Vector<3>& { return corners_[v].place; };
-  if (face.plane < 0) {  // that fan which leaves the least of the ball
+  if (face.plane < 0) {  // the fan that leaves the least of the ball
     std::size_t best = 0;
     double most = -1;
     const auto corner = [&](std::size_t k) { return ring[k % ring.size()]; };
@@ -260,13 +259,13 @@ std::vector<std::array<std::uint32_t, 3>> CutBall::triangles_of(const Face& face
       made.push_back({corner(best), corner(best + k), corner(best + k + 1)});
     return made;
   }
-  // Where two corners have come to the same place one of them is left.
+  // Merges corners at the same position.
   const auto same = [&](std::uint32_t a, std::uint32_t b) { return place(a) == place(b); };
   ring.erase(std::unique(ring.begin(), ring.end(), same), ring.end());
   while (ring.size() > 1 && same(ring.front(), ring.back())) ring.pop_back();
   if (ring.size() < 3) return {};
-  // A convex polygon: halved again and again, from a corner and in a sense that both halves of the ball agree
-  // on.
+  // A convex polygon: bisected recursively, from a corner and in an orientation that both halves of the ball
+  // agree on.
   Vector<3> area = Vector<3>::Zero();
   for (std::size_t k = 2; k < ring.size(); ++k)
     area += (place(ring[k - 1]) - place(ring[0])).cross(place(ring[k]) - place(ring[0]));

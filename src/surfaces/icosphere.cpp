@@ -40,8 +40,8 @@ Icosphere icosahedron() {
   return made;
 }
 
-/// Places in the grid of a divided face, named by the corners of the icosahedron that they are between: so
-/// faces find the vertices of an edge that another one has made.
+/// Positions in the grid of a divided face, identified by the icosahedron's corners that they are between, so
+/// that faces find the vertices of shared edges.
 using Place = std::array<std::pair<std::uint32_t, int>, 3>;
 
 Icosphere divided(int n) {
@@ -56,7 +56,7 @@ Icosphere divided(int n) {
       std::ranges::sort(place);
       const auto [at, is_new] = known.try_emplace(place, static_cast<std::uint32_t>(made.vertices.size()));
       if (is_new) {
-        Vector<3> sum = Vector<3>::Zero();  // in the order of the place, the same for all faces
+        Vector<3> sum = Vector<3>::Zero();  // in the order of the place, so the same for all faces
         for (const auto& [corner, times] : place)
           if (times > 0) sum += times * base.vertices[corner];
         made.vertices.push_back(sum.normalized());

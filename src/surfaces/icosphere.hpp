@@ -7,7 +7,7 @@
 
 namespace bernal {
 
-/// A closed surface of triangles whose corners lie on the unit sphere, seen counter-clockwise from outside.
+/// A closed surface of triangles with corners on the unit sphere, counter-clockwise from outside.
 struct Icosphere {
   std::vector<Vector<3>> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -15,8 +15,8 @@ struct Icosphere {
   double volume = 0;
 };
 
-/// The faces of an icosahedron divided into frequency² triangles each, their corners moved out onto the
-/// sphere: 20 frequency² triangles, 10 frequency² + 2 vertices. Kept once made. Precondition: frequency >= 1.
+/// The faces of an icosahedron divided into frequency² triangles each, with corners moved out onto the
+/// sphere: 20 frequency² triangles, 10 frequency² + 2 vertices. Cached. Precondition: frequency >= 1.
 const Icosphere& icosphere(int frequency);
 
 /// The least frequency with 1 - inradius <= deflection; at most `most_frequent`.

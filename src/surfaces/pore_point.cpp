@@ -8,7 +8,7 @@
 namespace bernal {
 namespace {
 
-/// The n-th of numbers that fill [0, 1) evenly in that base. Source: Halton, Numer. Math. 2 (1960) 84.
+/// The n-th number of the Halton sequence in [0, 1) in that base. Source: Halton, Numer. Math. 2 (1960) 84.
 double halton(std::uint32_t n, std::uint32_t base) {
   double value = 0, share = 1;
   for (; n > 0; n /= base) {
@@ -18,7 +18,7 @@ double halton(std::uint32_t n, std::uint32_t base) {
   return value;
 }
 
-/// The nearest sphere's surface, and the direction from its nearest image.
+/// The gap to the nearest sphere, and the direction away from its nearest image.
 struct Nearest {
   double gap;
   Vector<3> away;
@@ -43,7 +43,7 @@ class Gaps {
  private:
   const Spheres<dynamic>& spheres_;
   Boundary<3> boundary_;
-  double farthest_;  ///< where there are no spheres
+  double farthest_;  ///< if there are no spheres
 };
 
 /// The domain with its walls out of reach.
@@ -60,13 +60,13 @@ Box periods_of(const Domain& domain) {
   return box;
 }
 
-/// Whether the ball meets no sphere, in no image.
+/// Whether the ball meets no sphere or image.
 bool clears_spheres(const PorePoint& ball, const Spheres<dynamic>& spheres, const Domain& domain) {
   const Boundary<3> boundary = boundary_of<3>(domain);
   const Box box = periods_of(domain);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const Vector<3> c(spheres.x[0][i], spheres.x[1][i], spheres.x[2][i]);
-    // Nearest images only, and only what is near by far: the rest the certificate need not see.
+    // Only near spheres and nearest images: the rest is too far to need the certificate.
     if (boundary.minimum_image(ball.place - c).norm() > 2 * (ball.clearance + spheres.r[i])) continue;
     Spheres<3> pair;
     pair.push_back(ball.place, ball.clearance);
@@ -76,7 +76,7 @@ bool clears_spheres(const PorePoint& ball, const Spheres<dynamic>& spheres, cons
   return true;
 }
 
-/// Of the balls those that lie inside the walls, in their order.
+/// The balls inside the walls, in order.
 std::vector<PorePoint> inside(const Mesh& walls, const std::vector<PorePoint>& balls) {
   if (walls.triangles.empty() || balls.empty()) return balls;
   Spheres<3> all;
@@ -119,7 +119,7 @@ std::optional<PorePoint> point_in_pores(const Spheres<dynamic>& spheres, const D
     found[n] = {p, nearest.gap};
   });
   std::ranges::stable_sort(found, std::greater(), &PorePoint::clearance);
-  // Of walls the certificate is the only judge: first whether a point is inside, then how far.
+  // Walls are judged by the certificate alone: first whether a point is inside, then its distance.
   std::erase_if(found, [](const PorePoint& point) { return !(point.clearance > 0); });
   const double tiny = 1e-6 * bounds.size().minCoeff();
   std::vector<PorePoint> small = found;

@@ -21,8 +21,7 @@
 namespace bernal {
 namespace {
 
-/// Whether the point lies nearer to center + image·edges than the radius, of the real numbers that the
-/// arguments are.
+/// Whether the point is nearer to center + image·edges than the radius, for exact real arguments.
 template <class Number>
 verify::Truth within(const FloatPoint& p, const Vector<3>& center, const std::array<int, 3>& image,
                      const Vector<3>& edges, double radius) {
@@ -38,7 +37,7 @@ FloatPoint rounded(const Vector<3>& p) {
   return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
 }
 
-/// Corners that rounding has made one become one, and triangles that lose one go.
+/// Merges corners that rounding made equal, and drops triangles that lose one.
 void weld(FloatSurface& surface) {
   PointNumbers<FloatPoint> numbers;
   std::vector<std::uint32_t> number;
@@ -56,10 +55,11 @@ void weld(FloatSurface& surface) {
   surface.faces.resize(kept);
 }
 
-/// A sphere's cuts as planes about its centre, each once, and for every piece which of them it has.
+/// A sphere's cuts as planes about its centre, each once, and for every piece its planes.
 struct PlanesOfSphere {
   std::vector<BallPlane> planes;
-  std::vector<std::vector<std::pair<int, bool>>> cuts;  ///< of each piece: plane, and whether it keeps below
+  /// For each piece: plane, and whether it keeps the part below.
+  std::vector<std::vector<std::pair<int, bool>>> cuts;
 };
 
 PlanesOfSphere planes_of(std::span<const Piece> pieces, const Boundary<3>& boundary, double shift) {
@@ -71,8 +71,8 @@ PlanesOfSphere planes_of(std::span<const Piece> pieces, const Boundary<3>& bound
       BallPlane plane{cut.keeps.normal, cut.keeps.offset - cut.keeps.normal.dot(piece.center), cut.face};
       bool below = true;
       if (cut.face != Cut::contact) {
-        // The image beyond the upper end is cut at the lower one by the plane that cuts the sphere at its
-        // upper end: the same number for both.
+        // The image beyond the upper end is cut at the lower end by the plane that cuts the sphere at its
+        // upper end: the same index for both.
         const int axis = cut.face / 2, image = piece.image[static_cast<std::size_t>(axis)];
         const bool at_upper = (cut.face % 2 == 1) == (image == 0);
         const double lower = boundary.origin[axis] - home.center[axis];
@@ -94,11 +94,11 @@ PlanesOfSphere planes_of(std::span<const Piece> pieces, const Boundary<3>& bound
   return made;
 }
 
-/// The polygons in which the two halves of a cut meet, at the ends of periods: what one has the other has,
-/// the other way round. Rounding and slivers can have the better of that where several planes cut a ball.
+/// The polygons in which the halves of a cut meet, at the ends of periods: each half must have the other's
+/// polygon reversed. Rounding and slivers may prevent this if several planes cut a ball.
 class MeetingPolygons {
  public:
-  /// Of a part of the ball; `below` says which half of that plane's cut it is.
+  /// Adds a face of a part of the ball; `below` is the side of that plane's cut.
   void add(const CutBall& ball, const CutBall::Face& face, bool below) {
     for (std::size_t k = 0; k < face.corners.size(); ++k) {
       Edge edge{face.plane, place_of(ball, face.corners[k]),

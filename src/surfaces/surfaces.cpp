@@ -19,7 +19,8 @@ double largest_radius_of(const Spheres<dynamic>& spheres) {
   return spheres.empty() ? 0 : *std::ranges::max_element(spheres.r);
 }
 
-/// Of circumscribed walls, in the domain's unit: the share of the largest sphere's radius that spheres have.
+/// Of circumscribed walls, in the domain's unit: the same share of the largest sphere's radius as for
+/// spheres.
 double wall_deflection(const Spheres<dynamic>& spheres, const Domain& domain, double deflection) {
   const double radius = largest_radius_of(spheres);
   return deflection * (radius > 0 ? radius : 0.1 * bounds_of(domain).size().maxCoeff());
@@ -40,18 +41,18 @@ Spheres<dynamic> wrapped(Spheres<dynamic> spheres, const Domain& domain) {
   return spheres;
 }
 
-/// The balls that hold what is written, and less.
+/// The balls that contain the written surfaces.
 Spheres<dynamic> smaller_by(Spheres<dynamic> spheres, double inset) {
   for (double& r : spheres.r) r -= inset;
   return spheres;
 }
 
-/// Of each end, the triangles of spheres that lie in it.
+/// For each end, the triangles of spheres in it.
 using Covered = std::array<std::vector<std::array<FloatPoint, 3>>, 6>;
 
-/// Where spheres that lie in the ends of other periods cross the outline of this one, at either end of its
-/// own period: all four lines in which the ends of two periods meet are divided at the same points, also
-/// where of a sphere that just reaches such a line one end has no triangle.
+/// Points at which spheres in the ends of other periods cross the outline of this one, at either end of its
+/// own period: all four lines in which the ends of two periods meet are divided at the same points, even if a
+/// sphere that just reaches such a line has no triangle at one end.
 std::vector<FloatPoint> points_on_outline(const WallSurface::End& end,
                                           const std::vector<WallSurface::End>& ends, const Covered& covered) {
   const auto place_of = [](const WallSurface::End& e) {
@@ -110,7 +111,7 @@ Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double
   }
   if (choice != SurfaceChoice::spheres) make_container(overlaps);
   if (has_spheres() && choice != SurfaceChoice::spheres && !walls_.walls.triangles.empty()) {
-    // A thousandth more than the walls were moved by, for what conversion to another unit rounded.
+    // A thousandth more than the walls were moved, for the rounding of unit conversion.
     const Certificate in = certify(smaller_by(spheres, 1.001 * shift_),
                                    walls_.extended(boundary_of<3>(domain)), {.monitor = monitor});
     if (in.cancelled) throw Cancelled();
@@ -141,7 +142,7 @@ void Surfaces::make_container(bool overlaps) {
     });
   }
   container_ = walls_.walls;
-  PointNumbers<FloatPoint> numbers;  // the walls are joined: each of their points is another one
+  PointNumbers<FloatPoint> numbers;  // the walls are joined: all their points are distinct
   for (const FloatPoint& p : container_.vertices) numbers.of(p);
   const auto add = [&](FloatSurface end) {
     renumber(end.triangles, [&](std::uint32_t v) {

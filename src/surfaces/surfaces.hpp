@@ -11,27 +11,27 @@
 
 namespace bernal {
 
-/// A part of a file: the container, or one piece of a sphere. Its triangles number the vertices of the whole
-/// file; in a pore space's boundary it may use those of the container at the ends of periods.
+/// A part of a file: the container, or one piece of a sphere. Its triangles index the vertices of the whole
+/// file; in the boundary of a pore space they may use the container's vertices at the ends of periods.
 struct SurfacePart {
-  std::optional<std::uint32_t> sphere;  ///< none: the container
-  std::uint32_t first_vertex = 0;       ///< the number of the first of its own
+  std::optional<std::uint32_t> sphere;  ///< absent: the container
+  std::uint32_t first_vertex = 0;       ///< index of the first vertex of its own
   std::span<const FloatPoint> vertices;
   std::span<const Triangle> triangles;
 };
 
-/// What a file of triangles is to hold of a packing, part by part: nothing but the part in hand, the walls
-/// and the pieces are in memory.
+/// The triangles of a packing for a file, part by part: only the current part, the walls and the pieces are
+/// in memory.
 class Surfaces {
  public:
-  /// Lengths in the file's unit. Throws Error{bad_argument} as SphereSurfaces and `wall_surface` do, and
-  /// where spheres overlap at the end of a period and the pore space is asked for.
+  /// Lengths in the file's unit. Throws Error{bad_argument} as SphereSurfaces and `wall_surface` do, and if
+  /// the pore space is requested and spheres overlap at the end of a period.
   Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double deflection, SurfaceChoice choice,
            const Monitor& monitor);
 
   using Visit = std::function<void(const SurfacePart&)>;
-  /// Calls visit for the container, where it is asked for, and then for the spheres, all or those in that
-  /// order. The same parts whenever it is called with the same order.
+  /// Calls visit for the container, if requested, and then for the spheres, all or in the given order. The
+  /// parts are the same for each call with the same order.
   void visit(const Visit& visit) const { visit_spheres(nullptr, visit); }
   void visit(const std::vector<std::uint32_t>& order, const Visit& visit) const {
     visit_spheres(&order, visit);
@@ -44,13 +44,13 @@ class Surfaces {
   bool has_spheres() const { return choice_ != SurfaceChoice::container; }
   const SphereSurfaces& spheres() const { return spheres_; }
   const SurfaceMeasures& measures() const { return measures_; }
-  /// What rounding to single precision moves points by at most.
+  /// The largest displacement by rounding to single precision.
   double shift() const { return shift_; }
-  /// The walls with what lies at the ends of periods, as they are written; empty for spheres alone.
+  /// The walls with the faces at the ends of periods, as written; empty for spheres alone.
   const FloatSurface& container() const { return container_; }
   const WallSurface& walls() const { return walls_; }
 
-  /// "1,000 surfaces of 320,000 triangles …": how many, how far from the spheres, what was proven.
+  /// "1,000 surfaces of 320,000 triangles …": counts, distance from the spheres, what was proven.
   std::string note() const;
 
  private:
@@ -65,23 +65,23 @@ class Surfaces {
   SphereSurfaces spheres_;
   const Monitor& monitor_;
   FloatSurface container_;
-  std::map<FloatPoint, std::uint32_t> rim_;  ///< vertices of the container at the ends of periods
+  std::map<FloatPoint, std::uint32_t> rim_;  ///< container vertices at the ends of periods
   SurfaceMeasures measures_;
   std::uint64_t vertices_ = 0, triangles_ = 0;
   FloatPoint lower_{}, upper_{};
   std::string proof_;
 };
 
-/// A point of the pore space and a lower bound of how far it is from spheres and walls.
+/// A point of the pore space with a lower bound on its distance from spheres and walls.
 struct PorePoint {
   Vector<3> place;
   double clearance;
 };
 
-/// The point with the largest clearance among some thousand candidates, the best of which have climbed away
-/// from what is nearest. That the ball of the clearance around it meets no sphere, in no image, and lies
-/// inside the walls as they are written is proven as certificates are. Nothing where no candidate lies in
-/// the pores. Cost: O(N) a candidate.
+/// The point with the largest clearance among some thousand candidates, the best of which were moved away
+/// from their nearest obstacles. It is proven, as in certificates, that the ball of that clearance meets no
+/// sphere or image and lies inside the walls as written. Absent if no candidate lies in the pores. Cost: O(N)
+/// a candidate.
 std::optional<PorePoint> point_in_pores(const Spheres<dynamic>& spheres, const Domain& domain,
                                         const WallSurface& walls);
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "cad/triangulate.hpp"
+#include "cad/read/triangulate.hpp"
 #include "geometry/edges.hpp"
 #include "geometry/point_numbers.hpp"
 #include "surfaces/icosphere.hpp"
@@ -30,7 +30,7 @@ void append(FloatSurface& to, const FloatSurface& more) {
   to.faces.insert(to.faces.end(), more.faces.begin(), more.faces.end());
 }
 
-/// Equal vertices become one.
+/// Merges equal vertices.
 void join(FloatSurface& surface) {
   PointNumbers<FloatPoint> numbers;
   renumber(surface.triangles, [&](std::uint32_t v) { return numbers.of(surface.vertices[v]); });
@@ -100,7 +100,7 @@ struct MakeWalls {
       for (std::uint32_t k = 0; k < n; ++k) {
         const double phi = 2 * std::numbers::pi * k / n;
         Vector<3> p = ends[end] + radius * (std::cos(phi) * e1 + std::sin(phi) * e2);
-        if (along >= 0) {  // both rings the same but along the axis
+        if (along >= 0) {  // both rings are equal except along the axis
           p = ends[0] + radius * (std::cos(phi) * e1 + std::sin(phi) * e2);
           const Boundary<3> boundary = boundary_of<3>(Domain(cylinder));
           const bool upper = (end == 1) == (axis[along] > 0);
@@ -194,7 +194,7 @@ WallSurface wall_surface(const Domain& domain, double deflection) {
 std::optional<FloatSurface> end_between(const WallSurface::End& end,
                                         const std::vector<std::array<FloatPoint, 3>>& covered,
                                         const std::vector<FloatPoint>& on_outline) {
-  // Of what is covered the outline: edges that only one triangle has.
+  // The outline of what is covered: edges with a single triangle.
   PointNumbers<FloatPoint> corners;
   std::vector<FaceCorners> triangles;
   for (const auto& [a, b, c] : covered) triangles.push_back({corners.of(a), corners.of(b), corners.of(c)});
@@ -206,7 +206,7 @@ std::optional<FloatSurface> end_between(const WallSurface::End& end,
     rim.insert({from, to});
   }
   rim.insert(on_outline.begin(), on_outline.end());
-  // The end's own outline, divided where spheres cross it; an edge that both have bounds nothing.
+  // The end's own outline, divided where spheres cross it; an edge in both bounds nothing.
   for (std::size_t k = 0; k < end.outline.size(); ++k) {
     const FloatPoint from = end.outline[k], to = end.outline[(k + 1) % end.outline.size()];
     std::vector<FloatPoint> line = {from, to};

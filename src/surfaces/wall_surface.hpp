@@ -6,13 +6,13 @@
 
 namespace bernal {
 
-/// The walls of a domain in single precision, seen from outside, and where periods end.
+/// The walls of a domain in single precision, oriented outwards, and the ends of its periods.
 ///
-/// Curved walls are circumscribed, so that whatever lies in the domain lies inside them: the sides of a
-/// prism touch the cylinder, the triangles of a geodesic polyhedron touch the sphere or stay outside it.
+/// Curved walls are circumscribed, so that the domain lies inside them: the sides of a prism touch the
+/// cylinder, the triangles of a geodesic polyhedron touch the sphere or stay outside it.
 struct WallSurface {
-  /// An end of the period: an outline in a plane across an axis, counter-clockwise from outside, and on
-  /// the opposite end the same corners in the opposite order.
+  /// An end of the period: an outline in a plane normal to an axis, counter-clockwise from outside; the
+  /// opposite end has the same corners in reverse order.
   struct End {
     int face;  ///< as Cut::face
     std::vector<FloatPoint> outline;
@@ -24,18 +24,17 @@ struct WallSurface {
 
   /// The walls and the whole ends as one closed surface.
   FloatSurface closed() const;
-  /// The same with the ends moved out by a period, exactly as floats say: where the walls repeat themselves
-  /// so do these for as far as balls of one period reach.
+  /// The same with the ends moved out by exactly a period: walls that are periodic as far as the balls of one
+  /// period reach.
   Mesh extended(const Boundary<3>& boundary) const;
 };
 
 /// `deflection`: the largest distance of a circumscribed surface from the wall, in the domain's unit.
-/// Precondition: three dimensions. Throws Error{bad_argument} where that takes absurdly many triangles.
+/// Precondition: three dimensions. Throws Error{bad_argument} if that takes too many triangles.
 WallSurface wall_surface(const Domain& domain, double deflection);
 
-/// The part of an end that no sphere covers: triangles seen from outside. `covered` are triangles of spheres
-/// that lie in it; `on_outline` are points that divide its outline as well. Nothing if the triangles
-/// overlap.
+/// The part of an end that no sphere covers, as triangles seen from outside. `covered` are triangles of
+/// spheres in it; `on_outline` are further points that divide its outline. Absent if the triangles overlap.
 std::optional<FloatSurface> end_between(const WallSurface::End& end,
                                         const std::vector<std::array<FloatPoint, 3>>& covered,
                                         const std::vector<FloatPoint>& on_outline);

@@ -15,9 +15,9 @@
 #include "report/report.hpp"
 #include "report/report_summary.hpp"
 #include "result/result_folder.hpp"
-#include "result/unpublished.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/unpublished.hpp"
 #include "sweep/claim.hpp"
 
 namespace fs = std::filesystem;

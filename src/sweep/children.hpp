@@ -1,11 +1,11 @@
 #pragma once
-#include <sys/types.h>
-
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
+#include "files/descriptor.hpp"
+#include "process/child.hpp"
 
 namespace bernal::sweep {
 
@@ -13,22 +13,14 @@ namespace bernal::sweep {
 /// that are there when this ends are killed.
 class Children {
  public:
-  Children() = default;
-  ~Children();
-  Children(const Children&) = delete;
-  Children& operator=(const Children&) = delete;
-
   /// Program and arguments, without a shell. False where the system has no room for another process; throws
   /// Error{bad_argument} where the program cannot be run.
   bool start(std::size_t of, const std::vector<std::string>& words);
-  std::size_t size() const { return children_.size(); }
+  std::size_t size() const { return running_.size(); }
 
-  struct Ended {
-    std::size_t of = 0;  ///< what it was started with
-    int signal = 0;      ///< that ended it; 0: none
-    int exit_code = 0;
+  struct Ended : ChildEnd {
+    std::size_t of = 0;     ///< what it was started with
     std::string last_line;  ///< that it said
-    double seconds = 0;
   };
   /// Those that have ended since.
   std::vector<Ended> ended();
@@ -37,13 +29,13 @@ class Children {
   void kill_after(double seconds);
 
  private:
-  struct Child {
+  struct Running {
     std::size_t of;
-    pid_t pid;
-    int said;  ///< descriptor of a file in memory
+    Child child;
+    Descriptor said;  ///< a file in memory
     Stopwatch watch = {};
   };
-  std::vector<Child> children_;
+  std::vector<Running> running_;
 };
 
 }  // namespace bernal::sweep

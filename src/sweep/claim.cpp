@@ -1,13 +1,10 @@
 #include "sweep/claim.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
-#include <thread>
 #include <utility>
 
 namespace fs = std::filesystem;
@@ -23,56 +20,33 @@ bool stands_as(int descriptor, const fs::path& file) {
          open.st_ino == named.st_ino && open.st_dev == named.st_dev;
 }
 
-/// Whether the lock is had; who only asks whether a claim is held lets go within microseconds.
-bool lock(int descriptor) {
-  constexpr int most_tries = 10;
-  for (int k = 0; k < most_tries; ++k) {
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || (errno != EWOULDBLOCK && errno != EINTR)) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
-}
-
 }  // namespace
 
 Claim::Claim(fs::path file) : file_(std::move(file)) {
+  constexpr std::chrono::milliseconds patience(10);  // who only asks whether it is held lets go at once
   constexpr int most_tries = 100;
-  for (int k = 0; k < most_tries; ++k) {
+  for (int k = 0; k < most_tries && !ours_; ++k) {
     std::error_code problem;
     fs::create_directories(file_.parent_path(), problem);
-    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    Descriptor open(::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
     const bool may_be_made = problem != std::errc::permission_denied;
-    if (descriptor_ < 0 && errno == ENOENT && may_be_made) continue;  // the last has just removed the folder
-    if (descriptor_ < 0) {  // a folder that cannot be written to is refused where the result is written
-      ours_ = true;
-      return;
-    }
-    if (!lock(descriptor_)) return;
-    if (stands_as(descriptor_, file_)) {
-      ours_ = true;
-      return;
-    }
-    ::close(std::exchange(descriptor_, -1));
+    if (!open.is_open() && errno == ENOENT && may_be_made) continue;  // the last has just removed the folder
+    lock_ = Lock(std::move(open), patience);
+    if (lock_.is_elsewhere()) return;
+    // A folder that cannot be written to is refused where the result is written.
+    ours_ = !lock_.of().is_open() || stands_as(lock_.of().number(), file_);
   }
 }
 
 Claim::~Claim() {
-  if (descriptor_ < 0) return;
+  if (!ours_ || !lock_.of().is_open()) return;
   std::error_code ignored;
-  if (ours_) {
-    fs::remove(file_, ignored);
-    fs::remove(file_.parent_path(), ignored);  // where it was the last one
-  }
-  ::close(descriptor_);
+  fs::remove(file_, ignored);
+  fs::remove(file_.parent_path(), ignored);  // where it was the last one
 }
 
 bool is_claimed(const fs::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
-  if (descriptor < 0) return false;
-  // A shared lock, that two who ask do not take each other for somebody at work.
-  const bool free = ::flock(descriptor, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK;
-  ::close(descriptor);
-  return !free;
+  return is_locked(Descriptor(::open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW)));
 }
 
 void remove_abandoned(const fs::path& file) {

@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
 
+#include "files/lock.hpp"
+
 namespace bernal::sweep {
 
 /// That this process alone works at something, as long as it lives: a lock of a file, which the system lets
@@ -10,14 +12,12 @@ class Claim {
   /// The folder of the file is made.
   explicit Claim(std::filesystem::path file);
   ~Claim();
-  Claim(const Claim&) = delete;
-  Claim& operator=(const Claim&) = delete;
 
   bool is_ours() const { return ours_; }
 
  private:
   std::filesystem::path file_;
-  int descriptor_ = -1;
+  Lock lock_;
   bool ours_ = false;
 };
 

@@ -144,7 +144,7 @@ class Pool {
   }
 
   void take(const sweep::Children::Ended& ended) {
-    const bool is_left = ended.signal == 0 && ended.exit_code == exit_code_left_to_another;
+    const bool is_left = ended.signal == 0 && ended.code == exit_code_left_to_another;
     // Asked before it is looked at: whoever has let go since has left what he did.
     const bool is_elsewhere = is_claimed(ended.of);
     look_at(ended.of);
@@ -179,11 +179,11 @@ class Pool {
         ended.last_line.empty()
             ? ""
             : ": " + plain_text(ended.last_line.substr(ended.last_line.starts_with("bernal: ") ? 8 : 0), 500);
-    std::string why = fmt::format("its process ended with exit code {}{}", ended.exit_code, said);
+    std::string why = fmt::format("its process ended with exit code {}{}", ended.code, said);
     if (ended.signal != 0)
       why = fmt::format("killed by signal {} ({}){}{}", ended.signal, strsignal(ended.signal),
                         ended.signal == SIGKILL ? ", as the system does where memory is short" : "", said);
-    const int exit_code = ended.signal != 0 ? 128 + ended.signal : ended.exit_code;
+    const int exit_code = ended.signal != 0 ? 128 + ended.signal : ended.code;
     CellResult& result = row(ended.of).result;
     result.state = CellResult::State::crashed;
     result.outcome = "crashed";

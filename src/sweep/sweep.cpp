@@ -11,13 +11,13 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "cad/files_of_part.hpp"
+#include "cad/read/files_of_part.hpp"
 #include "files/sha256.hpp"
-#include "result/unpublished.hpp"
 #include "scene/read_value.hpp"
 #include "scene/scene_of_table.hpp"
 #include "scene/toml_file.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/unpublished.hpp"
 #include "sweep/axes.hpp"
 
 namespace fs = std::filesystem;

@@ -9,9 +9,9 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "report/drawing.hpp"
-#include "report/palette.hpp"
 #include "scene/toml_text.hpp"
 #include "sweep/results.hpp"
+#include "viewer/palette.hpp"
 
 namespace bernal {
 namespace sweep {

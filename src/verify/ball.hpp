@@ -9,7 +9,7 @@
 
 namespace bernal::verify {
 
-/// A sphere of the packing and its place there.
+/// A sphere of the packing with its index there.
 template <int D>
 struct Ball {
   Vector<D> c;
@@ -20,8 +20,8 @@ struct Ball {
   double center(int axis) const { return c[axis]; }
 };
 
-/// How far from a wall a centre has to stay: a radius, and the gap that is to be beyond it; so many times
-/// that where all lengths are taken so many times.
+/// The required distance of a centre from a wall: a radius and the gap beyond it. All lengths are multiplied
+/// by `scale`.
 struct Reach {
   double r, gap = 0, scale = 1;
 
@@ -35,14 +35,14 @@ struct Reach {
 template <int D>
 using BallTree = BoxTree<Ball<D>, D>;
 
-/// Whether a ball lies inside, as far from the walls as is asked for; by how much more, at the least from a
-/// near wall, over its reach; and how far it is from that. Infinite if none is near.
-struct Stand {
+/// Position of a ball relative to the walls: whether it is inside with the required gaps, the smallest excess
+/// over its reach relative to the reach, and the distance from the nearest wall. Infinite if no wall is near.
+struct WallState {
   bool inside = true;
   double gap = std::numeric_limits<double>::infinity();
   double distance = std::numeric_limits<double>::infinity();
 
-  /// One more piece of wall, at that signed distance from the centre, in double.
+  /// Adds a piece of wall, at a signed distance from the centre in double.
   void add(double clearance, const Reach& reach, bool holds) {
     const double least = reach.r + reach.gap;
     inside = inside && holds;

@@ -7,18 +7,18 @@
 
 namespace bernal::verify {
 
-/// A real number known as a double and a bound of its error: |x - value| <= error.
+/// A real number known as a double with an error bound: |x - value| <= error.
 ///
 /// Running error analysis (Wilkinson 1963; Higham, Accuracy and Stability of Numerical Algorithms, 2002,
-/// section 3.3). With u = 2^-53 every operation fl(x ∘ y) is off by at most u |fl(x ∘ y)|, plus 2^-1075 where
-/// a product underflows; sums and differences that underflow are exact. So
+/// section 3.3). With u = 2^-53 every operation fl(x ∘ y) has an error of at most u |fl(x ∘ y)|, plus 2^-1075
+/// if a product underflows; sums and differences that underflow are exact. So
 ///   x + y:  error = ex + ey + u |v|
 ///   x × y:  error = |x| ey + |y| ex + ex ey + u |v| + tiny
 /// with `tiny` above the five underflows (of the product, and of the four terms of its bound).
 ///
-/// The bounds themselves are rounded: each is a sum of products of non-negative doubles, hence low by a
-/// factor of at least (1 - u)^k after k operations. `sign` allows for k up to 2^22, a thousand times what the
-/// longest predicate has. Overflow makes value and error infinite or NaN, and the sign unknown.
+/// The bounds themselves are rounded: each is a sum of products of non-negative doubles, so too small by a
+/// factor of at least (1 - u)^k after k operations. `sign` allows for k up to 2^22, a thousand times as many
+/// as the longest predicate has. Overflow makes value and error infinite or NaN, and the sign unknown.
 ///
 /// Cost: an addition 4, a product 9 floating-point operations, without branches.
 class Bounded {
@@ -50,7 +50,7 @@ class Bounded {
     const double value = a.value_ * a.value_;
     return {value, (2 * std::abs(a.value_) + a.error_) * a.error_ + u * value + tiny};
   }
-  /// |x| and min(x, y) move by no more than their arguments do. Precondition: no overflow so far.
+  /// |x| and min(x, y) change by no more than their arguments. Precondition: no overflow so far.
   friend Bounded magnitude(const Bounded& a) { return {std::abs(a.value_), a.error_}; }
   friend Bounded smaller(const Bounded& a, const Bounded& b) {
     return {std::min(a.value_, b.value_), std::max(a.error_, b.error_)};

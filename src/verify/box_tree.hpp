@@ -14,7 +14,7 @@
 
 namespace bernal::verify {
 
-/// A closed axis-aligned box; empty as made.
+/// A closed axis-aligned box; initially empty.
 template <int D>
 struct Box {
   std::array<double, D> lower = filled_with(infinity);
@@ -45,13 +45,13 @@ bool touch(const Box<D>& a, const Box<D>& b) {
   return all;
 }
 
-/// Bounds of a sum or difference of two doubles of which the nearest double is known: that is off by half a
-/// spacing of doubles at most, and |sum| 2^-52 is one spacing or more. (Below 2^-969, where that may be lost,
-/// sums of doubles are exact or the spacing is still representable.)
+/// Bounds on a sum or difference of two doubles, given the nearest double: its error is at most half a
+/// spacing of doubles, and |sum| 2^-52 is at least one spacing. (Below 2^-969, where that may underflow, sums
+/// of doubles are exact or the spacing is still representable.)
 inline double rounded_down(double sum) { return sum - 0x1p-52 * std::abs(sum); }
 inline double rounded_up(double sum) { return sum + 0x1p-52 * std::abs(sum); }
 
-/// A box that holds the ball of radius r around c, never smaller than that.
+/// A box that contains the ball of radius r around c, rounded outwards.
 template <int D>
 Box<D> box_of_ball(const Vector<D>& c, double r) {
   Box<D> box;
@@ -62,7 +62,7 @@ Box<D> box_of_ball(const Vector<D>& c, double r) {
   return box;
 }
 
-/// The box with `by` >= 0 more on every side, never smaller than that.
+/// The box widened by `by` >= 0 on every side, rounded outwards.
 template <int D>
 Box<D> widened(Box<D> box, double by) {
   for (int k = 0; k < D && by > 0; ++k) {
@@ -72,14 +72,14 @@ Box<D> widened(Box<D> box, double by) {
   return box;
 }
 
-/// A bounding-volume hierarchy over items that have `Box<D> box() const` and `double center(int axis) const`
-/// (finite): a complete binary tree, each node split at the median along the longer extent of its centres.
+/// A bounding-volume hierarchy over items with `Box<D> box() const` and `double center(int axis) const`
+/// (finite): a complete binary tree, each node split at the median along the longest extent of its centres.
 /// So its depth is log2(N / 8) for any input: clustered, coincident, any ratio of sizes.
 ///
-/// A search is for whatever `touch(const Box<D>&, const Query&)` says, which must hold for a box that holds
-/// another one for which it holds; every search is complete with respect to it. The tree does not depend on
-/// the number of threads. Cost: building O(N log N), 4 D to 8 D bytes an item beside the item itself; a
-/// search O(log N) and what it finds, in few dimensions.
+/// A search visits what satisfies `touch(const Box<D>&, const Query&)`, which must be monotonic: true for a
+/// box if it is true for a box inside it. Then the search is complete. The tree does not depend on the number
+/// of threads. Cost: building O(N log N), 4 D to 8 D bytes an item besides the item itself; a search O(log N)
+/// plus its results, in few dimensions.
 template <class Item, int D>
 class BoxTree {
  public:
@@ -89,10 +89,10 @@ class BoxTree {
     build(root, 0, items_.size());
   }
 
-  /// The items in the tree's order: neighbours in space are mostly near in it.
+  /// The items in the tree's order, which mostly keeps neighbours together.
   std::span<const Item> items() const { return items_; }
 
-  /// Leaves are numbered from 0; together they hold every item once.
+  /// Leaves are numbered from 0; together they contain every item once.
   std::size_t leaves() const { return first_leaf_; }
   std::span<const Item> leaf(std::size_t l) const {
     return std::span(items_).subspan(begin_of_leaf(l), begin_of_leaf(l + 1) - begin_of_leaf(l));
@@ -114,8 +114,8 @@ class BoxTree {
     if (l + 1 < leaves()) for_each_leaf_touching(query, next(first_leaf_ + l), visit);
   }
 
-  /// The smallest distance(item) over all items, given that no item is nearer to its query than
-  /// distance_to_box(box) for any box that holds it. Infinity for an empty tree.
+  /// The smallest distance(item) over all items, if no item is nearer to the query than distance_to_box(box)
+  /// for any box that contains it. Infinity for an empty tree.
   template <class DistanceToBox, class Distance>
   double nearest(DistanceToBox distance_to_box, Distance distance) const {
     double best = Box<D>::infinity;
@@ -135,7 +135,7 @@ class BoxTree {
   /// The node that follows n and its descendants in depth-first order; the root after the last.
   static std::size_t next(std::size_t n) { return (n + 1) >> std::countr_zero(n + 1); }
 
-  /// Visits the leaves that touch, from node n on in depth-first order.
+  /// Visits the leaves that touch the query, from node n on in depth-first order.
   template <class Query, class Visit>
   void for_each_leaf_touching(const Query& query, std::size_t n, Visit visit) const {
     do {

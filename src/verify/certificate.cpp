@@ -60,16 +60,17 @@ int dimension_of_spheres(const SphereRows& spheres) { return spheres.dimension; 
 std::uint64_t count_of(const Spheres<dynamic>& spheres) { return spheres.size(); }
 std::uint64_t count_of(const SphereRows& spheres) { return spheres.count; }
 
-/// Nothing is proven about spheres that are none.
-std::string complaint(std::uint64_t bad, std::uint64_t first, std::span<const double> center, double r) {
+/// The statement about invalid spheres.
+std::string invalid_statement(std::uint64_t bad, std::uint64_t first, std::span<const double> center,
+                              double r) {
   return fmt::format(
       "Not certified: {} without a finite centre and a positive finite radius (first: sphere {} at {} with "
       "radius {}); nothing else was tested.",
       counted_spheres(bad), first, fmt::join(center, ", "), r);
 }
 
-/// Why there is nothing to prove.
-std::optional<std::string> complaint_about(const SphereRows& spheres) {
+/// The statement if some spheres are invalid, else nothing.
+std::optional<std::string> error_in(const SphereRows& spheres) {
   constexpr std::uint64_t piece = 4096;
   std::uint64_t bad = 0, first_bad = 0;
   std::vector<double> worst;
@@ -84,9 +85,9 @@ std::optional<std::string> complaint_about(const SphereRows& spheres) {
     }
   });
   if (bad == 0) return std::nullopt;
-  return complaint(bad, first_bad, std::span<const double>(worst).first(width - 1), worst.back());
+  return invalid_statement(bad, first_bad, std::span<const double>(worst).first(width - 1), worst.back());
 }
-std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
+std::optional<std::string> error_in(const Spheres<dynamic>& spheres) {
   std::uint64_t bad = 0, first = spheres.size();
   std::mutex adding;
   parallel_ranges(spheres.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
@@ -101,7 +102,7 @@ std::optional<std::string> complaint_about(const Spheres<dynamic>& spheres) {
   });
   if (bad == 0) return std::nullopt;
   const Vector<dynamic> c = spheres.center(first);
-  return complaint(bad, first, {c.data(), static_cast<std::size_t>(c.size())}, spheres.r[first]);
+  return invalid_statement(bad, first, {c.data(), static_cast<std::size_t>(c.size())}, spheres.r[first]);
 }
 
 template <int D, class Space>
@@ -113,47 +114,47 @@ verify::StreamedSlabs<D> slabs_of(const SphereRows& spheres, const Space& space,
   return {spheres, space, at_once};
 }
 
-/// Slab by slab, each with what reaches into it of those that follow.
+/// Slab by slab, each with the parts of later slabs that reach into it.
 template <int D, class Space, class Source>
 verify::Tally judge_in(const Space& space, const Source& spheres, const Domain& domain,
-                       const verify::Course& course) {
+                       const verify::Job& job) {
   const verify::Walls<D> walls = verify::walls_of<D>(domain);
-  const auto slabs = slabs_of<D>(spheres, space, course.options().at_once);
-  const double known = verify::distances_known_up_to(course.options().gap);
-  verify::Tally tally(course.options().list);
+  const auto slabs = slabs_of<D>(spheres, space, job.options().at_once);
+  const double known = verify::distances_known_up_to(job.options().gap);
+  verify::Tally tally(job.options().list);
   std::vector<verify::Ball<D>> next = slabs.balls(0, space);
-  for (std::size_t s = 0; s < slabs.size() && !course.stopped(); ++s) {
-    course.goes_on(s, slabs.size());
+  for (std::size_t s = 0; s < slabs.size() && !job.stopped(); ++s) {
+    job.set_part(s, slabs.size());
     const verify::BallTree<D> balls(std::exchange(next, {}));
-    tally += verify::judge_pairs(balls, space, course);
+    tally += verify::judge_pairs(balls, space, job);
     const auto reach = space.reach_of(verify::widened(slabs.extent(s), known));
     if (s + 1 < slabs.size()) next = slabs.balls(s + 1, space);
-    for (std::size_t t = s + 1; t < slabs.size() && !course.stopped(); ++t) {
+    for (std::size_t t = s + 1; t < slabs.size() && !job.stopped(); ++t) {
       if (!touch(slabs.extent(t), reach)) continue;
       const std::vector<verify::Ball<D>> more = t > s + 1 ? slabs.balls(t, space) : decltype(next)();
       const std::span<const verify::Ball<D>> others = t > s + 1 ? more : next;
-      tally += verify::judge_pairs_with(others, balls, space, course);
+      tally += verify::judge_pairs_with(others, balls, space, job);
     }
-    tally += verify::judge_walls<D>(balls.items(), walls, course);
+    tally += verify::judge_walls<D>(balls.items(), walls, job);
   }
   return tally;
 }
 
 template <class Source>
-verify::Tally judge(const Source& spheres, const Domain& domain, const verify::Course& course) {
+verify::Tally judge(const Source& spheres, const Domain& domain, const verify::Job& job) {
   const Vector<dynamic> periods = verify::periods_of(domain);
   const bool repeats = (periods.array() < verify::Box<1>::infinity).any();
-  if (!repeats && periods.size() == 3) return judge_in<3>(verify::OpenSpace<3>(), spheres, domain, course);
+  if (!repeats && periods.size() == 3) return judge_in<3>(verify::OpenSpace<3>(), spheres, domain, job);
   std::optional<verify::Tally> tally;
   with_dimension(static_cast<int>(periods.size()), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    tally = judge_in<D>(verify::PeriodicSpace<D>{periods}, spheres, domain, course);
+    tally = judge_in<D>(verify::PeriodicSpace<D>{periods}, spheres, domain, job);
   });
   return *std::move(tally);
 }
 
 /// "1,200 spheres, 7,000 near pairs and 7,200 walls decided exactly, no overlap, no protrusion"
-std::string what_was_decided(const Certificate& c, const Domain& domain, const std::string& limit) {
+std::string decided_text(const Certificate& c, const Domain& domain, const std::string& limit) {
   const std::string pairs = counted(c.pairs_tested, "near pair", "near pairs");
   if (!has_walls(domain))
     return fmt::format("{} in a {}, {} decided exactly, no overlap{}", counted_spheres(c.spheres),
@@ -168,7 +169,7 @@ std::string what_was_decided(const Certificate& c, const Domain& domain, const s
       counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit);
 }
 
-std::string gaps_kept(const Certificate& c) {
+std::string gaps_text(const Certificate& c) {
   if (!(c.gap + c.wall_gap > 0)) return "";
   if (!(c.wall_gap > 0)) return fmt::format(", all {} apart", c.gap);
   if (!(c.gap > 0)) return fmt::format(", all {} from the walls", c.wall_gap);
@@ -185,13 +186,13 @@ std::string statement_of(const Certificate& c, const Domain& domain) {
     if (c.spheres == 0) return "Certified: there are no spheres.";
     std::string closest;
     if (c.least_distance)
-      return fmt::format("Certified: {}{}; least distance {:.9g}.", what_was_decided(c, domain, limit),
-                         gaps_kept(c), *c.least_distance);
+      return fmt::format("Certified: {}{}; least distance {:.9g}.", decided_text(c, domain, limit),
+                         gaps_text(c), *c.least_distance);
     if (c.worst_pair && c.gap == 0)
       closest = c.max_overlap > 0 ? fmt::format("; largest overlap {:.2g}", c.max_overlap)
                                   : fmt::format("; closest pair gap {:.2g}", 0.0 - c.max_overlap);
     if (!closest.empty()) closest += " of the sum of radii";
-    return fmt::format("Certified: {}{}{}.", what_was_decided(c, domain, limit), gaps_kept(c), closest);
+    return fmt::format("Certified: {}{}{}.", decided_text(c, domain, limit), gaps_text(c), closest);
   }
   std::string faults;
   if (c.overlapping_pairs > 0)
@@ -228,16 +229,16 @@ Certificate certificate_of(const Source& spheres, const Domain& domain, const Ce
   result.allowed_overlap = options.allowed_overlap;
   result.gap = options.gap;
   result.wall_gap = options.wall_gap;
-  if (auto complaint = complaint_about(spheres)) {
-    result.statement = *std::move(complaint);
+  if (auto message = error_in(spheres)) {
+    result.statement = *std::move(message);
   } else {
-    const verify::Course course(options);
+    const verify::Job job(options);
     verify::Tally tally(0);
     if (options.threads > 0)
-      tbb::task_arena(options.threads).execute([&] { tally = judge(spheres, domain, course); });
+      tbb::task_arena(options.threads).execute([&] { tally = judge(spheres, domain, job); });
     else
-      tally = judge(spheres, domain, course);
-    result.cancelled = course.stopped();
+      tally = judge(spheres, domain, job);
+    result.cancelled = job.stopped();
     result.pairs_tested = tally.pairs;
     result.walls_tested = tally.walls;
     result.centers_tested = tally.centers;

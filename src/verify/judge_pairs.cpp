@@ -9,20 +9,20 @@
 namespace bernal::verify {
 namespace {
 
-/// Tries the pairs of balls of a tree in an OpenSpace or a PeriodicSpace.
+/// Tests the pairs of balls of a tree in an OpenSpace or a PeriodicSpace.
 template <int D, class Space>
 class PairJudge {
  public:
-  PairJudge(const BallTree<D>& balls, const Space& space, const Course& course)
-      : balls_(balls), space_(space), course_(course), gap_(course.options().gap) {}
+  PairJudge(const BallTree<D>& balls, const Space& space, const Job& job)
+      : balls_(balls), space_(space), job_(job), gap_(job.options().gap) {}
 
   Tally judge_all() const {
-    return course_.for_each("pairs", balls_.leaves(), 16,
-                            [this](std::size_t l, Tally& tally) { judge_leaf(l, tally); });
+    return job_.for_each("pairs", balls_.leaves(), 16,
+                         [this](std::size_t l, Tally& tally) { judge_leaf(l, tally); });
   }
 
   Tally judge_with(std::span<const Ball<D>> others) const {
-    return course_.for_each("pairs", others.size(), 256, [&](std::size_t k, Tally& tally) {
+    return job_.for_each("pairs", others.size(), 256, [&](std::size_t k, Tally& tally) {
       const Ball<D>& other = others[k];
       balls_.for_each_touching(reach_of(other.box()), [&](const Ball<D>& ball) {
         ball.index < other.index ? judge(ball, other, tally) : judge(other, ball, tally);
@@ -31,7 +31,7 @@ class PairJudge {
   }
 
  private:
-  /// Every near pair within a leaf, and of it with a later leaf.
+  /// Tests every near pair within a leaf, and between it and later leaves.
   void judge_leaf(std::size_t l, Tally& tally) const {
     const auto mine = balls_.leaf(l);
     for (std::size_t i = 0; i < mine.size(); ++i) {
@@ -52,7 +52,7 @@ class PairJudge {
         ball.index < other.index ? judge(ball, other, tally) : judge(other, ball, tally);
   }
 
-  /// What touches it is as near as to be looked at.
+  /// The region whose contents count as near.
   auto reach_of(const Box<D>& box) const {
     return space_.reach_of(widened(box, distances_known_up_to(gap_)));
   }
@@ -62,7 +62,7 @@ class PairJudge {
            [&]<class Number>(double allowed) { return balls_clear<Number>(space_, a, b, allowed, gap_); });
   }
 
-  /// A ball and its nearest images, an edge away.
+  /// Tests a ball against its nearest images, an edge away.
   void judge_own_images(const Ball<D>& ball, Tally& tally) const {
     const double edge = space_.edges.minCoeff(), diameter = 2 * ball.r;
     if (diameter + distances_known_up_to(gap_) < edge) return;
@@ -71,15 +71,15 @@ class PairJudge {
     });
   }
 
-  /// Decides one near pair, by its distance and its sum of radii in double.
+  /// Decides a near pair; `distance` and the sum of radii are in double.
   template <class Predicate>
   void record(std::uint64_t first, std::uint64_t second, double distance, double sum, Tally& tally,
               const Predicate& clear) const {
     const auto holds = [&](double allowed, Decisions& decisions) {
-      return decide(course_.options().arithmetic, decisions,
+      return decide(job_.options().arithmetic, decisions,
                     [&]<class Number>() { return clear.template operator()<Number>(allowed); }) == Truth::yes;
     };
-    const double allowed = course_.options().allowed_overlap;
+    const double allowed = job_.options().allowed_overlap;
     const bool as_allowed = holds(allowed, tally.decisions);
     Decisions only_for_the_sign;
     const bool strictly = allowed == 0 ? as_allowed : holds(0, only_for_the_sign);
@@ -98,35 +98,35 @@ class PairJudge {
 
   const BallTree<D>& balls_;
   const Space& space_;
-  const Course& course_;
+  const Job& job_;
   const double gap_;
 };
 
 }  // namespace
 
-Tally judge_pairs(const BallTree<3>& balls, const OpenSpace<3>& space, const Course& course) {
-  return PairJudge(balls, space, course).judge_all();
+Tally judge_pairs(const BallTree<3>& balls, const OpenSpace<3>& space, const Job& job) {
+  return PairJudge(balls, space, job).judge_all();
 }
 
 template <int D>
-Tally judge_pairs(const BallTree<D>& balls, const PeriodicSpace<D>& space, const Course& course) {
-  return PairJudge(balls, space, course).judge_all();
+Tally judge_pairs(const BallTree<D>& balls, const PeriodicSpace<D>& space, const Job& job) {
+  return PairJudge(balls, space, job).judge_all();
 }
 
 Tally judge_pairs_with(std::span<const Ball<3>> others, const BallTree<3>& balls, const OpenSpace<3>& space,
-                       const Course& course) {
-  return PairJudge(balls, space, course).judge_with(others);
+                       const Job& job) {
+  return PairJudge(balls, space, job).judge_with(others);
 }
 
 template <int D>
 Tally judge_pairs_with(std::span<const Ball<D>> others, const BallTree<D>& balls,
-                       const PeriodicSpace<D>& space, const Course& course) {
-  return PairJudge(balls, space, course).judge_with(others);
+                       const PeriodicSpace<D>& space, const Job& job) {
+  return PairJudge(balls, space, job).judge_with(others);
 }
 #define BERNAL_INSTANTIATE(D)                                                                            \
-  template Tally judge_pairs(const BallTree<D>&, const PeriodicSpace<D>&, const Course&);                \
+  template Tally judge_pairs(const BallTree<D>&, const PeriodicSpace<D>&, const Job&);                   \
   template Tally judge_pairs_with(std::span<const Ball<D>>, const BallTree<D>&, const PeriodicSpace<D>&, \
-                                  const Course&);
+                                  const Job&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

@@ -19,7 +19,7 @@ namespace {
 
 bool positive(double x) { return std::isfinite(x) && x > 0; }
 
-/// Tries one ball against the pieces of wall of a container that has few.
+/// Tests a ball against a container's few pieces of wall.
 template <int D>
 class PieceJudge {
  public:
@@ -33,19 +33,19 @@ class PieceJudge {
   void piece(double clearance, const Predicate& predicate) {
     ++tally_.walls;
     const bool holds = decide(arithmetic_, tally_.decisions, predicate) == Truth::yes;
-    stand_.add(clearance, reach_, holds);
+    state_.add(clearance, reach_, holds);
   }
 
-  const Stand& stand() const { return stand_; }
+  const WallState& state() const { return state_; }
 
  private:
   Reach reach_;
   Arithmetic arithmetic_;
   Tally& tally_;
-  Stand stand_;
+  WallState state_;
 };
 
-/// Of any dimension; only the axes that end have walls.
+/// In any dimension; only non-periodic axes have walls.
 template <int D>
 class BoxWall {
  public:
@@ -56,7 +56,7 @@ class BoxWall {
               "a box needs a finite corner and a positive finite size");
   }
 
-  Stand stand_of(const Ball<D>& ball, const CertifyOptions& options, Tally& tally) const {
+  WallState wall_state_of(const Ball<D>& ball, const CertifyOptions& options, Tally& tally) const {
     PieceJudge judge(ball, options, tally);
     for (int k = 0; k < D; ++k) {
       if (!box_.has_wall(k)) continue;
@@ -65,7 +65,7 @@ class BoxWall {
       judge.piece(c - lower, [&]<class Number>() { return above<Number>(c, r, lower); });
       judge.piece(lower + size - c, [&]<class Number>() { return below<Number>(c, r, lower, size); });
     }
-    return judge.stand();
+    return judge.state();
   }
 
  private:
@@ -79,12 +79,12 @@ class SphereWall {
             "a sphere needs a finite centre and a positive finite radius");
   }
 
-  Stand stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
     const Vector<3> d = ball.c - sphere_.center;
     PieceJudge judge(ball, options, tally);
     judge.piece(sphere_.radius - std::hypot(d[0], d[1], d[2]),
                 [&]<class Number>() { return ball_in_ball<Number>(ball.c, judge.reach(), sphere_); });
-    return judge.stand();
+    return judge.state();
   }
 
  private:
@@ -101,7 +101,7 @@ class CylinderWall {
     unit_axis_ = cylinder.axis.stableNormalized();
   }
 
-  Stand stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
     const Vector<3> w = ball.c - cylinder_.base;
     const Vector<3> across = w.cross(unit_axis_);
     const double height = w.dot(unit_axis_);
@@ -109,7 +109,7 @@ class CylinderWall {
     if (!cylinder_.periodic) judge_lids(judge, ball, height);
     judge.piece(cylinder_.radius - std::hypot(across[0], across[1], across[2]),
                 [&]<class Number>() { return inside_side<Number>(ball.c, judge.reach(), cylinder_); });
-    return judge.stand();
+    return judge.state();
   }
 
  private:
@@ -127,11 +127,13 @@ template <int D, class Wall>
 Walls<D> made(Wall wall) {
   return [wall = std::make_shared<const Wall>(std::move(wall))](const Ball<D>& ball,
                                                                 const CertifyOptions& options, Tally& tally) {
-    return wall->stand_of(ball, options, tally);
+    return wall->wall_state_of(ball, options, tally);
   };
 }
 
 }  // namespace
+
+static_assert(std::variant_size_v<Domain> == 5, "walls_of needs the walls of the new container");
 
 template <int D>
 Walls<D> walls_of(const Domain& domain) {
@@ -142,21 +144,21 @@ Walls<D> walls_of(const Domain& domain) {
     if (const auto* sphere = std::get_if<Sphere>(&domain)) return made<D>(SphereWall(*sphere));
     return made<D>(MeshWall(std::get<Mesh>(domain)));
   }
-  return [](const Ball<D>&, const CertifyOptions&, Tally&) { return Stand(); };
+  return [](const Ball<D>&, const CertifyOptions&, Tally&) { return WallState(); };
 }
 
 template <int D>
-Tally judge_walls(std::span<const Ball<D>> balls, const Walls<D>& walls, const Course& course) {
-  return course.for_each("walls", balls.size(), 64, [&](std::size_t i, Tally& tally) {
-    const Stand stand = walls(balls[i], course.options(), tally);
-    tally.add_ball({balls[i].index, stand.gap}, stand.inside);
-    tally.least_wall_distance = std::min(tally.least_wall_distance, stand.distance);
+Tally judge_walls(std::span<const Ball<D>> balls, const Walls<D>& walls, const Job& job) {
+  return job.for_each("walls", balls.size(), 64, [&](std::size_t i, Tally& tally) {
+    const WallState state = walls(balls[i], job.options(), tally);
+    tally.add_ball({balls[i].index, state.gap}, state.inside);
+    tally.least_wall_distance = std::min(tally.least_wall_distance, state.distance);
   });
 }
 
 #define BERNAL_INSTANTIATE(D)                \
   template Walls<D> walls_of(const Domain&); \
-  template Tally judge_walls(std::span<const Ball<D>>, const Walls<D>&, const Course&);
+  template Tally judge_walls(std::span<const Ball<D>>, const Walls<D>&, const Job&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

@@ -15,8 +15,8 @@ namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
-/// How far a vertex is from its exact corner at most: two roundings of a product, and another one or
-/// underflow where that is looked at in double.
+/// Largest distance of a vertex from its exact corner: two roundings of a product, and one more, or
+/// underflow, for the comparison in double.
 double off_by_at_most(double x) { return 0x1p-50 * std::abs(x) + 0x1p-1070; }
 
 /// The product with a positive integer below 2^53, without rounding.
@@ -39,7 +39,7 @@ void check_numbers(const Mesh& mesh) {
                                 mesh.vertices.size()));
 }
 
-/// That other corners than those of the vertices are taken for the wall by mistake shows in numbers.
+/// Exact corners that belong to other vertices would be a different wall.
 void check_exact_corners(const Mesh& mesh) {
   if (!mesh.exact) return;
   const ExactCorners& exact = *mesh.exact;
@@ -55,7 +55,7 @@ void check_exact_corners(const Mesh& mesh) {
                 "the exact corners of the container's mesh are not those of its vertices");
 }
 
-/// How many directed edges lack a partner in the opposite direction.
+/// The number of directed edges without a partner in the opposite direction.
 std::size_t unpaired_edges(const Triangles& triangles) {
   std::vector<std::uint64_t> up, down;
   for (const auto& t : triangles) {
@@ -116,8 +116,8 @@ double distance_from_segment(const Vector<3>& p, const Vector<3>& a, const Vecto
   return std::hypot(rest[0], rest[1], rest[2]);
 }
 
-/// In double, to a few roundoffs of the triangle's size. The least of the three segments and, where p
-/// projects inside, the plane: so a wrong guess of the region does no harm, even on needles.
+/// In double, to a few roundoffs of the triangle's size. The least of the three segments and, if p projects
+/// inside, the plane: so a wrong guess of the region is harmless, even on needles.
 double distance_from_triangle(const Vector<3>& p, const Corners& v) {
   double best = Box<3>::infinity;
   for (int k = 0; k < 3; ++k) best = std::min(best, distance_from_segment(p, v[k], v[(k + 1) % 3]));
@@ -182,7 +182,7 @@ Truth MeshWall::clears(const Ball<3>& ball, const Reach& reach, const Facet& fac
   });
 }
 
-Stand MeshWall::stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
+WallState MeshWall::wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
   const Arithmetic arithmetic = options.arithmetic;
   const Reach reach{ball.r, options.wall_gap};
   bool clear = true;
@@ -197,9 +197,9 @@ Stand MeshWall::stand_of(const Ball<3>& ball, const CertifyOptions& options, Tal
   const bool center_is_inside = center_inside(ball, arithmetic, tally);
   if (!center_is_inside) distance = -distance_from(ball.c);
   const bool holds = center_is_inside && clear;
-  Stand stand{.inside = holds};
-  if (distance < Box<3>::infinity) stand.add(distance, reach, holds);
-  return stand;
+  WallState state{.inside = holds};
+  if (distance < Box<3>::infinity) state.add(distance, reach, holds);
+  return state;
 }
 
 bool MeshWall::center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const {

@@ -10,20 +10,20 @@ namespace bernal::verify {
 
 /// The triangles of a mesh as a wall.
 ///
-/// Inside is where the winding number is 1. That is well defined because the surface has no boundary: as many
-/// edges run from a to b as from b to a, for any two points, which the constructor checks. That the mesh does
-/// not intersect itself and faces outwards is its precondition (see Mesh).
+/// Inside is where the winding number is 1. That is well defined because the surface has no boundary: for any
+/// two points as many edges run from a to b as from b to a, which the constructor checks. It is a
+/// precondition that the mesh faces outwards and does not intersect itself (see Mesh).
 ///
-/// Where the corners are no doubles (see ExactCorners), all lengths are taken `scale` times: so the corners
-/// and the centres are sums of two doubles, and the radii exact products.
+/// With exact corners that are not doubles (see ExactCorners), all lengths are multiplied by `scale`: then
+/// corners and centres are sums of two doubles, and radii exact products.
 class MeshWall {
  public:
-  /// Keeps a reference to the mesh. Throws Error{bad_mesh} unless it has triangles, only finite vertices,
-  /// valid indices, exact corners that are those of its vertices, and no boundary.
+  /// Keeps a reference to the mesh. Throws Error{bad_mesh} unless it has triangles, finite vertices, valid
+  /// indices, exact corners that match its vertices, and no boundary.
   explicit MeshWall(const Mesh& mesh);
 
-  /// Tries the ball against the near triangles and decides the side of its centre; counts both.
-  Stand stand_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const;
+  /// Tests the ball against the near triangles and decides the side of its centre; counts both.
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const;
 
  private:
   struct Facet {

@@ -42,7 +42,7 @@ std::vector<PolygonWall::Edge> PolygonWall::edges_of(const Polygon& polygon) {
   return edges;
 }
 
-Stand PolygonWall::stand_of(const Ball<2>& ball, const CertifyOptions& options, Tally& tally) const {
+WallState PolygonWall::wall_state_of(const Ball<2>& ball, const CertifyOptions& options, Tally& tally) const {
   const Arithmetic arithmetic = options.arithmetic;
   const Reach reach{ball.r, options.wall_gap};
   bool clear = true;
@@ -63,9 +63,9 @@ Stand PolygonWall::stand_of(const Ball<2>& ball, const CertifyOptions& options, 
     distance = -distance;
   }
   const bool holds = inside && clear;
-  Stand stand{.inside = holds};
-  if (distance < Box<2>::infinity) stand.add(distance, reach, holds);
-  return stand;
+  WallState state{.inside = holds};
+  if (distance < Box<2>::infinity) state.add(distance, reach, holds);
+  return state;
 }
 
 bool PolygonWall::center_inside(const Ball<2>& ball, Arithmetic arithmetic, Tally& tally) const {

@@ -8,15 +8,15 @@ namespace bernal::verify {
 
 /// The edges of a polygon as a wall.
 ///
-/// Inside is where a ray crosses the edges an odd number of times, which is well defined for closed lines
-/// whatever they do; that they do not cross each other is the polygon's precondition and of no matter here.
+/// Inside is where a ray crosses the edges an odd number of times, which is well defined for any closed
+/// lines; that they do not cross each other is a precondition of the polygon but not needed here.
 class PolygonWall {
  public:
   /// Throws Error{bad_argument} unless there are corners and all of them are finite.
   explicit PolygonWall(const Polygon& polygon);
 
-  /// Tries the disc against the near edges and decides the side of its centre; counts both.
-  Stand stand_of(const Ball<2>& ball, const CertifyOptions& options, Tally& tally) const;
+  /// Tests the disc against the near edges and decides the side of its centre; counts both.
+  WallState wall_state_of(const Ball<2>& ball, const CertifyOptions& options, Tally& tally) const;
 
  private:
   struct Edge {

@@ -6,10 +6,10 @@
 #include "verify/ball.hpp"
 #include "verify/sign.hpp"
 
-// The questions that a certificate answers, each written once and evaluated in any arithmetic `Number` that
-// has +, -, ×, `square`, `magnitude`, `smaller` and `sign`: Bounded (a filter) or Exact. Only ring operations
-// and comparisons occur, no division and no root, so Exact answers them about the doubles as written. Radii
-// are positive throughout, gaps not negative.
+// The predicates of a certificate, each written once for any arithmetic `Number` with +, -, ×, `square`,
+// `magnitude`, `smaller` and `sign`: Bounded (a filter) or Exact. There are only ring operations and
+// comparisons, no division and no root, so Exact evaluates them without error on the given doubles. Radii are
+// positive, gaps not negative.
 
 namespace bernal::verify {
 
@@ -23,12 +23,12 @@ Triple<Number> vector(const Vector<3>& v) {
   return {Number(v[0]), Number(v[1]), Number(v[2])};
 }
 
-/// A point whose coordinates are sums of two doubles, of which `high` is the one nearest to the sum.
+/// A point whose coordinates are sums of two doubles, with `high` the double nearest to the sum.
 struct WidePoint {
   Vector<3> high, low;
 };
 
-/// a[k] - b[k], and what is told of the coordinates of two points by comparing doubles.
+/// a[k] - b[k], and comparisons of coordinates by their doubles.
 template <class Number>
 Number minus(const Vector<3>& a, const Vector<3>& b, int k) {
   return Number(a[k]) - Number(b[k]);
@@ -85,7 +85,7 @@ Truth balls_clear(const Space& space, const Ball<D>& a, const Ball<D>& b, double
                   square(least_distance<Number>(a.r, b.r, allowed, gap)));
 }
 
-/// The ball keeps its distance from its own images along an axis with that edge.
+/// Whether the ball keeps its distance from its own images along a periodic axis with that edge.
 template <class Number>
 Truth own_images_clear(double r, double edge, double allowed, double gap) {
   return at_least(Number(edge), least_distance<Number>(r, r, allowed, gap));
@@ -112,7 +112,7 @@ Truth ball_in_ball(const Vector<3>& c, const Reach& r, const Sphere& s) {
 }
 
 // A cylinder has three pieces of wall. With w = c - base, the axis a of any length and h = w·a, the height of
-// the centre is h / |a| and its distance from the axis |w × a| / |a|; both are compared as squares.
+// the centre is h / |a| and its distance from the axis |w × a| / |a|; both are compared squared.
 
 /// h >= r |a|
 template <class Number>
@@ -147,11 +147,11 @@ template <class Point>
 using CornersOf = std::array<Point, 3>;
 using Corners = CornersOf<Vector<3>>;
 
-/// The distance of p from the triangle is at least r.
+/// Whether the distance of p from the triangle is at least r.
 ///
-/// A triangle is its three vertices, the three open edges and the open face. An edge matters only where p
-/// projects between its ends, the face only where p projects inside; a vertex always belongs to the triangle,
-/// and so may be asked without a condition. Edges and faces without extent impose nothing.
+/// A triangle is its three vertices, three open edges and open face. An edge matters only if p projects
+/// between its ends, the face only if p projects inside; the vertices are tested unconditionally. Edges and
+/// faces without extent impose nothing.
 template <class Number, class Point>
 Truth ball_clears_triangle(const Point& p, const Reach& r, const CornersOf<Point>& corner) {
   const Number r_squared = square(r.as<Number>());
@@ -187,9 +187,9 @@ Truth ball_clears_triangle(const Point& p, const Reach& r, const CornersOf<Point
   return clear & (plane_clear | beside);
 }
 
-/// On which side of the line a -> b, seen from above, the point (px + ε, py + ε²) lies for all sufficiently
-/// small ε > 0; positive to the left. Zero only where a and b coincide seen from above: such a line has no
-/// sides. Antisymmetric in a, b, so that a path that crosses an edge leaves one triangle and enters another.
+/// The side of the line a -> b, in projection along z, of the point (px + ε, py + ε²) for all sufficiently
+/// small ε > 0; positive to the left. Zero only if the projections of a and b coincide. Antisymmetric in a,
+/// b, so that a path across an edge leaves one triangle and enters the other.
 template <class Number, class Point>
 Sign side_seen_from_above(const Point& a, const Point& b, const Point& p) {
   if (are_level(a, b, 0) && are_level(a, b, 1)) return Sign::zero;
@@ -200,11 +200,11 @@ Sign side_seen_from_above(const Point& a, const Point& b, const Point& p) {
   return is_above(b, a, 0) ? Sign::positive : Sign::negative;
 }
 
-/// How the ray from p upwards (+z) crosses the triangle: `positive` where it leaves through the side from
-/// which the triangle is seen counter-clockwise, `negative` where it enters, `zero` where it misses.
+/// How the ray from p upwards (+z) crosses the triangle: `positive` if it leaves through the side from which
+/// the triangle is counter-clockwise, `negative` if it enters, `zero` if it misses.
 ///
-/// The ray is moved by (ε, ε²) in x and y, so that it meets no edge, no vertex and no vertical triangle. If p
-/// lies on the triangle the answer is `zero`; no ball around such a p clears it anyway.
+/// The ray is shifted by (ε, ε²) in x and y, so that it meets no edge, no vertex and no vertical triangle. If
+/// p lies on the triangle the answer is `zero`; no ball around such a p clears it anyway.
 template <class Number, class Point>
 Sign crossing_above(const Point& p, const CornersOf<Point>& corner) {
   const Sign side[3] = {side_seen_from_above<Number>(corner[0], corner[1], p),
@@ -224,7 +224,7 @@ Sign crossing_above(const Point& p, const CornersOf<Point>& corner) {
   return height == -orientation ? orientation : Sign::zero;
 }
 
-/// The distance of p in the plane from the edge between a and b, ends included, is at least r.
+/// Whether the distance of p in the plane from the edge between a and b, ends included, is at least r.
 template <class Number>
 Truth ball_clears_edge(const Vector<2>& p, const Reach& r, const Vector<2>& a, const Vector<2>& b) {
   const auto minus = [](double s, double t) { return Number(s) - Number(t); };
@@ -240,10 +240,9 @@ Truth ball_clears_edge(const Vector<2>& p, const Reach& r, const Vector<2>& a, c
   return clear & (beyond | at_least(square(wx * ey - wy * ex), r_squared * length_squared));
 }
 
-/// Whether the ray from p along the first axis crosses the edge between a and b, of which the lower end
-/// belongs to it and the upper one does not: so a line that passes a corner is crossed there once, and one
-/// that only touches the ray twice or not at all. For a p on the edge the answer is of no matter: no disc
-/// around it clears that.
+/// Whether the ray from p along the first axis crosses the edge between a and b. The lower end belongs to the
+/// edge, the upper does not, so a line through a corner is crossed there once, and one that only touches the
+/// ray twice or not at all. For p on the edge the answer does not matter: no disc around it clears the edge.
 template <class Number>
 Truth crossing_to_the_right(const Vector<2>& p, const Vector<2>& a, const Vector<2>& b) {
   if ((a[1] > p[1]) == (b[1] > p[1])) return Truth::no;

@@ -3,12 +3,12 @@
 
 namespace bernal::verify {
 
-/// What an arithmetic knows of a number's sign. Exact arithmetic never answers `unknown`.
+/// The sign of a number as an arithmetic knows it. Exact arithmetic never returns `unknown`.
 enum class Sign : std::int8_t { negative = -1, zero = 0, positive = 1, unknown = 2 };
 
 constexpr Sign operator-(Sign s) { return s == Sign::unknown ? s : static_cast<Sign>(-static_cast<int>(s)); }
 
-/// Kleene's three-valued logic: a conjunction with a certain `no` is `no` whatever the other part is, so a
+/// Kleene's three-valued logic: a conjunction with a certain `no` is `no` whatever its other operand is, so a
 /// predicate can be certain although some of its comparisons are not.
 enum class Truth : std::int8_t { no = -1, unknown = 0, yes = 1 };
 

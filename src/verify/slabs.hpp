@@ -12,7 +12,7 @@
 
 namespace bernal::verify {
 
-/// Of an axis; empty until something is in it.
+/// An interval on an axis; initially empty.
 struct Range {
   double lower = Box<1>::infinity, upper = -Box<1>::infinity;
   void include(double from, double to) {
@@ -21,11 +21,11 @@ struct Range {
   }
 };
 
-/// The balls of a packing in slabs across the longest axis, so that only some of them have to be looked at
-/// together: at most so many a slab, unless more have one coordinate.
+/// The balls of a packing in slabs along the longest axis, so that only some of them need be in memory
+/// together: at most `at_once` a slab, unless more share one coordinate.
 ///
-/// Of every sphere only a number is kept, 4 bytes, and none where one slab holds all. Which slab a sphere is
-/// in follows from its centre, not from the threads. Cost: O(N), three times over one column.
+/// Only an index of 4 bytes is stored a sphere, and none if there is a single slab. The slab of a sphere
+/// depends on its centre alone, not on the threads. Cost: O(N), three passes over one column.
 template <int D>
 class Slabs {
  public:
@@ -59,7 +59,7 @@ class Slabs {
     return balls;
   }
 
-  /// What holds the balls of a slab; only along the axis that the slabs are cut across is it finite.
+  /// Bounds of the balls of a slab; finite only along the axis of the slabs.
   Box<D> extent(std::size_t slab) const { return extents_[slab]; }
 
  private:
@@ -93,7 +93,7 @@ class Slabs {
     for (int k = 1; k < D; ++k)
       if (centers[k].upper - centers[k].lower > centers[axis].upper - centers[axis].lower) axis = k;
 
-    // Bins of one width, and slabs of so many of them that follow each other.
+    // Bins of equal width, and slabs of consecutive bins.
     const std::size_t bins = bins_a_slab * ((n + at_once - 1) / at_once);
     const double lower = centers[axis].lower, extent = centers[axis].upper - lower;
     const auto bin_of = [&](std::size_t i) {
@@ -146,7 +146,7 @@ class Slabs {
 
   const Spheres<dynamic>& spheres_;
   std::vector<std::size_t> start_;
-  std::vector<std::uint32_t> order_;  // empty: as they come
+  std::vector<std::uint32_t> order_;  // empty: in the given order
   std::vector<Box<D>> extents_;
 };
 

@@ -8,8 +8,8 @@
 #include "bernal/domain/domain.hpp"
 #include "verify/box_tree.hpp"
 
-// What a certificate has to know of the space in which balls meet: how far apart two coordinates are, in any
-// arithmetic, and which boxes come together.
+// The spaces in which a certificate places balls: the distance of two coordinates, in any arithmetic, and
+// which boxes touch.
 
 namespace bernal::verify {
 
@@ -21,12 +21,12 @@ inline void require(bool holds, const char* what) {
   if (!holds) throw Error(ErrorCode::bad_argument, what);
 }
 
-/// The period of every axis of a domain, infinite where it has none. What repeats is said here once more,
-/// from the plain data: the packer's own metric is not trusted. Throws Error{bad_argument} unless every
-/// period is positive and finite and every axis is said to repeat itself or to end.
+/// The period of every axis of a domain, infinite if it has none. This is derived here independently from the
+/// plain data, because the packer's own metric is not trusted. Throws Error{bad_argument} unless every period
+/// is positive and finite and every axis is either periodic or not.
 Vector<dynamic> periods_of(const Domain& domain);
 
-/// Space without end, in which a ball is in one place.
+/// Infinite space, in which a ball has one position.
 template <int D>
 struct OpenSpace {
   static constexpr bool repeats = false;
@@ -39,7 +39,7 @@ struct OpenSpace {
   static double representative(int, double x) { return x; }
 };
 
-/// A box and the ends of its images in the periods before and after, as far as others can meet them.
+/// A box, and the ends of its images in the adjacent periods, as far as others can meet them.
 template <int D>
 struct RepeatedBox {
   Box<D> box;
@@ -47,9 +47,8 @@ struct RepeatedBox {
 };
 
 /// Whether `box` has a point in common with an image of the other, both being boxes of balls in a
-/// PeriodicSpace. No image but the next ones to either side has to be asked: centres are an edge apart at
-/// most. Nor has the far end of those: it is an edge beyond a centre of its own box, and so beyond all
-/// centres.
+/// PeriodicSpace. Only the adjacent images matter, because centres differ by at most an edge; and only their
+/// near ends, because the far end is an edge beyond a centre of its own box, and so beyond all centres.
 template <int D>
 bool touch(const Box<D>& box, const RepeatedBox<D>& other) {
   bool all = true;
@@ -59,24 +58,24 @@ bool touch(const Box<D>& box, const RepeatedBox<D>& other) {
   return all;
 }
 
-/// Space that repeats itself with the period edges[k] along axis k, or does not where that is infinite. Every
-/// ball has an image in each period and is represented by that with -edge/2 <= c <= edge/2 on every axis.
+/// Space with the period edges[k] along axis k, infinite if there is none. Every ball has an image in each
+/// period and is represented by the one with -edge/2 <= c <= edge/2 on every axis.
 ///
-/// Squared distances add up over the axes, and the image of a ball may be chosen for each axis by itself: so
-/// the nearest of all images of a ball is the one that is nearest along every axis, and |ci - cj + k·L| >= d
-/// holds for every vector k of integers if it holds for that one.
+/// Squared distances add up over the axes, and the image of a ball can be chosen for each axis separately; so
+/// the nearest image is the nearest along every axis, and |ci - cj + k·L| >= d holds for every integer vector
+/// k if it holds for that image.
 template <int D>
 struct PeriodicSpace {
   static constexpr bool repeats = true;
 
   Vector<D> edges;
 
-  /// The representative coordinate. Exact: IEEE 754's remainder has no rounding error. Precondition: finite.
+  /// The representative coordinate. Exact: IEEE 754's remainder is not rounded. Precondition: finite.
   double representative(int k, double x) const {
-    return 2 * std::abs(x) <= edges[k] ? x : std::remainder(x, edges[k]);  // x where the edge is infinite
+    return 2 * std::abs(x) <= edges[k] ? x : std::remainder(x, edges[k]);  // x if the edge is infinite
   }
 
-  /// The smallest |a - b + n edge| over all integers n: |a - b| or edge - |a - b|, because |a - b| <= edge.
+  /// The smallest |a - b + n edge| over integers n: |a - b| or edge - |a - b|, because |a - b| <= edge.
   template <class Number>
   Number offset(int k, double a, double b) const {
     const Number direct = magnitude(Number(a) - Number(b));

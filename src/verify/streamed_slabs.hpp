@@ -13,7 +13,7 @@
 
 namespace bernal::verify {
 
-/// Calls visit(first, values) for all rows, in pieces of so many of them.
+/// Calls visit(first, values) for all rows, in pieces of `piece` rows.
 template <class Visit>
 void for_each_piece(const SphereRows& rows, std::uint64_t piece, const Visit& visit) {
   const auto width = static_cast<std::size_t>(rows.dimension) + 1;
@@ -25,10 +25,11 @@ void for_each_piece(const SphereRows& rows, std::uint64_t piece, const Visit& vi
   }
 }
 
-/// As `Slabs`, of spheres that are read for every slab again. Held is where each piece of some thousand rows
-/// begins and ends, 48 bytes a piece in three dimensions, and of a slab only those pieces are read that reach
-/// into it. So rows in the order of one coordinate are read a few times in all, and rows in any order once a
-/// slab: the slabs are across the axis along which pieces are shortest. Nothing is decided by the order.
+/// Like `Slabs`, for spheres that are read again for every slab. Only the bounds of each piece of some
+/// thousand rows are stored, 48 bytes a piece in three dimensions, and only the pieces that reach into a slab
+/// are read for it. So rows sorted along one coordinate are read a few times in all, and rows in any other
+/// order once a slab; the slabs are along the axis on which pieces are shortest. The answer does not depend
+/// on the order.
 template <int D>
 class StreamedSlabs {
  public:
@@ -85,7 +86,7 @@ class StreamedSlabs {
         all_[k].include(piece[k].lower, piece[k].upper);
       }
     });
-    const auto share = [&](int k) {  // of the whole, that a piece takes on an axis
+    const auto share = [&](int k) {  // share of an axis that a piece covers
       const double extent = all_[k].upper - all_[k].lower;
       return extent > 0 ? lengths[k] / extent : Box<D>::infinity;
     };
@@ -93,7 +94,7 @@ class StreamedSlabs {
       if (share(k) < share(axis_)) axis_ = k;
   }
 
-  /// As `Slabs::cut`: bins of one width, and slabs of so many of them that follow each other.
+  /// As in `Slabs::cut`: bins of equal width, and slabs of consecutive bins.
   template <class Space>
   void cut(const Space& space, std::size_t at_once) {
     bins_ = bins_a_slab * static_cast<std::size_t>((rows_.count + at_once - 1) / at_once);

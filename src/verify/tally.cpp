@@ -40,7 +40,7 @@ Tally& Tally::operator+=(const Tally& other) {
 double with_sign(double ratio, bool holds) {
   constexpr double largest = std::numeric_limits<double>::max();
   constexpr double smallest = std::numeric_limits<double>::min();
-  if (std::isnan(ratio)) ratio = 0;  // an overflow on the way leaves only the sign
+  if (std::isnan(ratio)) ratio = 0;  // after an overflow only the sign is known
   return holds ? std::clamp(ratio, 0.0, largest) : std::clamp(ratio, -largest, -smallest);
 }
 

@@ -21,8 +21,8 @@ inline bool worse(const Certificate::Protrusion& a, const Certificate::Protrusio
   return std::tuple(a.gap, a.sphere) < std::tuple(b.gap, b.sphere);
 }
 
-/// The worst so many of what is added. Which they are depends on no order of adding. Cost: O(1) an item;
-/// memory twice the limit.
+/// The worst `limit` items added, independent of the order of adding. Cost: O(1) an item; memory twice the
+/// limit.
 template <class Item>
 class WorstOf {
  public:
@@ -55,14 +55,14 @@ class WorstOf {
   std::vector<Item> items_;
 };
 
-/// How many predicates were decided by which arithmetic.
+/// The number of predicates decided by each arithmetic.
 struct Decisions {
   std::uint64_t by_double = 0;
   std::uint64_t by_exact = 0;
 };
 
-/// What has been decided so far. Merging is associative and commutative: sums of counts, and extremes with
-/// ties broken by index. So any order of any number of threads gives the same tally.
+/// The decisions so far. Merging is associative and commutative: sums of counts, and extremes with ties
+/// broken by index. So the tally does not depend on the threads.
 struct Tally {
   std::uint64_t pairs = 0;
   std::uint64_t walls = 0;
@@ -71,7 +71,7 @@ struct Tally {
   std::uint64_t overlapping = 0;
   std::uint64_t protruding = 0;
 
-  /// None yet while the ratio is -infinity, or the gap +infinity.
+  /// None yet if the ratio is -infinity, or the gap +infinity.
   Certificate::Overlap worst_pair = {{0, 0}, -std::numeric_limits<double>::infinity()};
   Certificate::Protrusion worst_wall = {0, std::numeric_limits<double>::infinity()};
   WorstOf<Certificate::Overlap> overlaps;
@@ -80,18 +80,18 @@ struct Tally {
   double least_distance = std::numeric_limits<double>::infinity();
   double least_wall_distance = std::numeric_limits<double>::infinity();
 
-  /// `list`: of the most to be listed.
+  /// `list`: the most items of either list.
   explicit Tally(std::size_t list) : overlaps(list), protrusions(list) {}
 
-  /// A near pair; `clear` is whether it overlaps no more than is allowed.
+  /// Adds a near pair; `clear`: it overlaps no more than allowed.
   void add_pair(const Certificate::Overlap& pair, bool clear);
-  /// A ball that is near a wall, or has an infinite gap.
+  /// Adds a ball that is near a wall, or has an infinite gap.
   void add_ball(const Certificate::Protrusion& ball, bool inside);
   Tally& operator+=(const Tally& other);
 };
 
 /// Evaluates a predicate, `template <class Number> Truth` or `Sign`, first in Bounded (unless `arithmetic` is
-/// exact), then in Exact where that is not certain, and counts which of the two decided.
+/// exact), then in Exact if that is not certain, and counts which of the two decided.
 template <class Predicate>
 auto decide(Arithmetic arithmetic, Decisions& decisions, const Predicate& predicate) {
   if (arithmetic == Arithmetic::filtered) {
@@ -105,18 +105,18 @@ auto decide(Arithmetic arithmetic, Decisions& decisions, const Predicate& predic
   return predicate.template operator()<Exact>();
 }
 
-/// A ratio that was computed in double, with the sign that was decided exactly: not negative if `holds`,
-/// negative otherwise. Rounding can be wrong about the sign only within a few roundoffs of zero.
+/// A ratio computed in double, with the exactly decided sign: not negative if `holds`, else negative.
+/// Rounding can be wrong about the sign only within a few roundoffs of zero.
 double with_sign(double ratio, bool holds);
 
-/// A distance that was computed in double, on that side of a limit that was decided exactly.
+/// A distance computed in double, moved to the exactly decided side of a limit.
 inline double on_side_of(double limit, double distance, bool holds) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   return holds ? std::max(distance, limit) : std::min(distance, std::nextafter(limit, -infinity));
 }
 
-/// Where a gap is asked for, distances of up to twice that are looked at, so that the least is known; of
-/// walls those of up to the other gap as well.
+/// If a gap is requested, distances up to twice that are examined, so that the least is known; for walls, up
+/// to the other gap as well.
 inline double distances_known_up_to(double gap) { return 2 * gap; }
 inline double wall_distances_known_up_to(const CertifyOptions& options) {
   return std::max(options.gap, 2 * options.wall_gap);

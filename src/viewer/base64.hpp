@@ -13,7 +13,7 @@ namespace bernal {
 inline constexpr std::string_view base64_digits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Numbers as base64 of their bytes, least first. Cost: O(n).
+/// Base64 of the numbers' little-endian bytes. Cost: O(n).
 template <class T>
 std::string base64_of(std::span<const T> numbers) {
   static_assert(std::is_arithmetic_v<T> && std::endian::native == std::endian::little);
@@ -34,9 +34,9 @@ std::string base64_of(std::span<const T> numbers) {
   return text;
 }
 
-/// The first bytes, as many at most, that base64 stands for; blanks and line feeds are passed over. What was
-/// encoded in several parts, each with its own padding, comes one behind the other. Ends at what is no
-/// base64. Cost: O(most).
+/// Decodes at most the first `most` bytes of base64; blanks and line feeds are skipped. Parts that were
+/// encoded separately, each with its own padding, are concatenated. Stops at the first invalid character.
+/// Cost: O(most).
 inline std::string bytes_of_base64(std::string_view text, std::size_t most) {
   constexpr auto values = [] {
     std::array<signed char, 256> made{};
@@ -55,7 +55,7 @@ inline std::string bytes_of_base64(std::string_view text, std::size_t most) {
     const bool is_padding = c == '=';
     const int digit = is_padding ? 0 : values[static_cast<unsigned char>(c)];
     if (digit < 0) break;
-    if (is_padding && digits < 2) {  // of a part whose last byte is out already
+    if (is_padding && digits < 2) {  // of a part whose last byte was already written
       digits = 0;
       continue;
     }

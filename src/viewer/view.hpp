@@ -7,18 +7,18 @@
 
 namespace bernal {
 
-/// A point as the picture sees it: x to the right, y down, depth towards the eye, all in canvas units.
+/// A point in canvas units: x to the right, y down, depth towards the eye.
 struct CanvasPoint {
   double x = 0;
   double y = 0;
   double depth = 0;
 };
 
-/// An orthographic three-quarter view with +z up, scaled so that what it has to show fills the canvas.
+/// An orthographic three-quarter view with +z up, scaled to fill the canvas.
 class View {
  public:
-  /// `corners` are the points that must lie on the canvas, whose longer side is `longest`; `margin` is left
-  /// free around them, and the canvas is at least `narrowest` wide.
+  /// `corners` are the points that must lie on the canvas, whose longer side is `longest`, with `margin`
+  /// around them; the canvas is at least `narrowest` wide.
   View(std::span<const Vector<3>> corners, double longest, double margin, double narrowest);
 
   CanvasPoint operator()(const Vector<3>& p) const;
@@ -36,7 +36,7 @@ class View {
   double width_ = 0, height_ = 0;
 };
 
-/// What is nearest to the eye at each point of a raster over the canvas. Depths are kept in float.
+/// The nearest object to the eye at each point of a raster over the canvas. Depths are stored as float.
 class DepthBuffer {
  public:
   static constexpr std::uint32_t nothing = UINT32_MAX;
@@ -47,19 +47,19 @@ class DepthBuffer {
   void draw_ball(const CanvasPoint& center, double radius, std::uint32_t id);
   void draw_triangle(const CanvasPoint& a, const CanvasPoint& b, const CanvasPoint& c, std::uint32_t id);
 
-  /// Whether something nearer than all of the ball is drawn at every raster point that it could reach. True
-  /// only if so, and not always then: it looks at tiles. Drawn from front to back, most balls need no more
-  /// than this.
+  /// Whether something nearer than the whole ball covers every raster point that it could reach.
+  /// Conservative, because it tests tiles: false is possible for hidden balls. For drawing from front to back
+  /// this test usually suffices.
   bool hides_ball(const CanvasPoint& center, double radius) const;
 
-  /// Depth at the nearest raster point; minus infinity where nothing was drawn.
+  /// Depth at the nearest raster point; minus infinity if nothing was drawn.
   double depth(double x, double y) const;
   /// The farthest depth over the 3 x 3 raster points around (x, y).
   double farthest_depth(double x, double y) const;
   std::span<const std::uint32_t> ids() const { return ids_; }
 
  private:
-  /// Raster points, both ends included; empty where the first is beyond the last.
+  /// Raster points, both ends included; empty if first > last.
   struct Range {
     std::int64_t first, last;
   };

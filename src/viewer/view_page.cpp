@@ -4,7 +4,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "report/html_text.hpp"
+#include "viewer/html.hpp"
 #include "viewer/viewer_data.hpp"
 #include "viewer/viewer_files.hpp"
 #include "viewer/viewer_parts.hpp"
@@ -14,7 +14,7 @@ namespace bernal {
 void write_view_frame(Page& page) {
   page.raw(
       "<section class=\"bernal-view\" aria-label=\"Interactive view\" hidden></section>\n"
-      "<script>if (window.WebGL2RenderingContext) "  // at once, so that nothing moves later
+      "<script>if (window.WebGL2RenderingContext) "  // immediately, so that nothing moves later
       "document.currentScript.previousElementSibling.hidden = false;</script>\n");
 }
 

@@ -8,7 +8,7 @@
 namespace bernal {
 namespace {
 
-/// As near as single precision gets; what is beyond it, or no number, is none.
+/// In single precision; NaN if out of range or NaN.
 float single_or_none(double value) {
   constexpr double largest = std::numeric_limits<float>::max();
   return value >= -largest && value <= largest ? static_cast<float>(value)
@@ -23,7 +23,7 @@ std::vector<float> all_single(const Values& values) {
   return column;
 }
 
-/// Those entries of a column of all spheres that are asked for.
+/// The requested entries of a column of all spheres.
 template <class Values>
 std::vector<float> those_single(const Values& values, std::span<const std::uint32_t> of) {
   std::vector<float> column;

@@ -13,8 +13,8 @@
 #include "geometry/edges.hpp"
 #include "geometry/simplified.hpp"
 #include "measure/neighbourhoods.hpp"
-#include "report/palette.hpp"
 #include "viewer/base64.hpp"
+#include "viewer/palette.hpp"
 #include "viewer/view.hpp"
 #include "viewer/viewer_columns.hpp"
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t most_sharp_edges = 8000;
 constexpr double farthest_placed =
-    1e9;  // in sizes of the domain; nobody sees more, and single precision holds it
+    1e9;  // in sizes of the domain; far beyond what is visible, and in range of float
 
 std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
 
@@ -37,7 +37,7 @@ std::string json_list(std::span<const double> values) {
 }
 std::string json_list(const Vector<3>& v) { return json_list(std::span(v.data(), 3)); }
 
-/// As a JSON string in ASCII that ends no script: all else is escaped.
+/// A JSON string in ASCII that cannot end a script: everything else is escaped.
 std::string json_text(std::string_view text) {
   std::string out = "\"";
   for (const char c : text)
@@ -58,7 +58,7 @@ Vector<3> in_frame(const Vector<dynamic>& p, const Frame& frame) {
   return frame.to_local(in_space);
 }
 
-/// Of each axis; 0 where it has none, and beyond the domain's dimension.
+/// The period of each axis; 0 if it has none, and beyond the domain's dimension.
 Vector<3> periods_of(const Domain& domain) {
   Vector<3> periods = Vector<3>::Zero();
   if (dimension_of(domain) == 2) periods.head<2>() = boundary_of<2>(domain).edges;
@@ -66,7 +66,7 @@ Vector<3> periods_of(const Domain& domain) {
   return periods;
 }
 
-/// How deep a sphere lies in what hides it: behind the walls, or the ends of the periods.
+/// Depth of a sphere behind the walls, or the ends of the periods, which hide it.
 std::vector<double> depths_of(const Packing& packing, std::span<const std::uint32_t> of) {
   const int dimension = packing.spheres.dimension();
   const Bounds<dynamic> bounds = bounds_of<dynamic>(packing.domain);
@@ -85,7 +85,7 @@ std::vector<double> depths_of(const Packing& packing, std::span<const std::uint3
   return depths;
 }
 
-/// What is shown of very many spheres, and down to which depth.
+/// The visible part of very many spheres, and its depth.
 struct Shell {
   std::vector<std::uint32_t> spheres;  ///< in their order
   double depth = 0;                    ///< 0: all are shown
@@ -101,7 +101,7 @@ Shell shell_of(const Packing& packing, std::size_t most) {
   const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(most);
   std::ranges::nth_element(sorted, last);
   shell.depth = *last;
-  // Of those that are as deep as that, the first.
+  // Of those at exactly this depth, the first.
   std::size_t left = most - static_cast<std::size_t>(std::count_if(
                                 sorted.begin(), last, [&](double depth) { return depth < shell.depth; }));
   std::erase_if(shell.spheres, [&](std::uint32_t i) {
@@ -161,7 +161,7 @@ struct WallsJson {
   const Frame& frame;
   std::size_t most_triangles;
 
-  std::string operator()(const Box&) const { return {}; }  // its bounds say it all
+  std::string operator()(const Box&) const { return {}; }  // its bounds suffice
   std::string operator()(const Cylinder& c) const {
     return fmt::format(",\"base\":{},\"axis\":{},\"radius\":{},\"height\":{}",
                        json_list(frame.to_local(c.base)), json_list(c.axis.stableNormalized()),

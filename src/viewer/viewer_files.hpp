@@ -3,7 +3,7 @@
 
 namespace bernal {
 
-/// The files of src/io/viewer, as the build found them; see cmake/embed_viewer.cmake.
+/// The files of src/viewer/page, embedded by cmake/embed_viewer.cmake.
 extern const std::string_view viewer_style, viewer_script;
 
 }  // namespace bernal

@@ -9,10 +9,10 @@ namespace {
 
 constexpr double whole_ball = 4.0 / 3.0 * std::numbers::pi;
 
-/// Where x > a.
+/// The part with x > a.
 double cap(double a) { return std::numbers::pi / 3 * (1 - a) * (1 - a) * (2 + a); }
 
-/// Where x > a and y > b, the caps of these being given.
+/// The part with x > a and y > b, given the caps of both.
 double wedge(double a, double b, double cap_a, double cap_b) {
   const double squared = 1 - a * a - b * b;
   if (squared <= 0) return (a < 0 ? cap_b : 0) + (b < 0 ? cap_a : 0) - (a < 0 && b < 0 ? whole_ball : 0);
@@ -21,10 +21,10 @@ double wedge(double a, double b, double cap_a, double cap_b) {
   return 2.0 / 3.0 * (std::atan2(s, ab) + ab * s - g(a) * std::atan2(s, b) - g(b) * std::atan2(s, a));
 }
 
-/// Area of the unit disc where x > a.
+/// Area of the unit disc with x > a.
 double segment(double a) { return std::acos(a) - a * std::sqrt((1 - a) * (1 + a)); }
 
-/// Area of the unit disc where x > a and y > b.
+/// Area of the unit disc with x > a and y > b.
 double quarter(double a, double b) {
   constexpr double pi = std::numbers::pi;
   if (a * a + b * b < 1) return 0.5 * (segment(a) + segment(b)) - 0.25 * pi + a * b;
@@ -123,26 +123,6 @@ void BallInCells::add_disc(double scale, double whole, double* to, std::ptrdiff_
       to[i] += std::clamp(scale * area, 0.0, whole);
     }
   }
-}
-
-double ball_in_box(const Vector<3>& center, double radius, const Bounds<3>& box) {
-  BallInCells cells;
-  for (int k = 0; k < 3; ++k)
-    cells.planes[static_cast<std::size_t>(k)] = {(box.lower[k] - center[k]) / radius,
-                                                 (box.upper[k] - center[k]) / radius};
-  double volume = 0;
-  cells.add(radius * radius * radius, box.volume(), &volume, 0, 0);
-  return volume;
-}
-
-double disc_in_rectangle(const Vector<2>& center, double radius, const Bounds<2>& rectangle) {
-  BallInCells cells;
-  for (int k = 0; k < 2; ++k)
-    cells.planes[static_cast<std::size_t>(k)] = {(rectangle.lower[k] - center[k]) / radius,
-                                                 (rectangle.upper[k] - center[k]) / radius};
-  double area = 0;
-  cells.add_disc(radius * radius, rectangle.volume(), &area, 0);
-  return area;
 }
 
 }  // namespace bernal

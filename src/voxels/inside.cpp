@@ -10,7 +10,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::array<double, 2> nowhere = {infinity, -infinity};
 
-/// Where b x² + 2 c x + d <= 0 for b >= 0, x being measured from some point near the answer.
+/// The interval where b x² + 2 c x + d <= 0 for b >= 0, with x measured from a point near the answer.
 std::array<double, 2> below_zero(double b, double c, double d) {
   if (!(b > 0)) return d <= 0 ? std::array{-infinity, infinity} : nowhere;
   const double discriminant = c * c - b * d;
@@ -23,8 +23,8 @@ struct PlanePoint {
   double y, x;
 };
 
-/// Where the line from p to q, of different sides of z, meets that height: the same doubles for both facets
-/// of an edge, which run along it in opposite senses.
+/// The point at height z on the line from p to q, which are on different sides of z: the same doubles for
+/// both facets of an edge, which traverse it in opposite directions.
 PlanePoint at_height(const Vector<3>& p, const Vector<3>& q, double z) {
   const Vector<3>&lower = p[2] < q[2] ? p : q, &upper = p[2] < q[2] ? q : p;
   const double t = (z - lower[2]) / (upper[2] - lower[2]);
@@ -82,7 +82,7 @@ Inside::Interval Inside::interval(const Box& box, double y, double z) const {
 Inside::Interval Inside::interval(const Cylinder& cylinder, double y, double z) const {
   const Vector<3> axis = cylinder.axis.stableNormalized(),
                   from(0, y - cylinder.base[1], z - cylinder.base[2]);
-  // Points from + x e, x being measured from the base: their parts along the axis and across it.
+  // Points from + x e, with x measured from the base, split into parts along the axis and normal to it.
   const double along = from.dot(axis);
   const Vector<3> across = from - along * axis, step = Vector<3>::UnitX() - axis[0] * axis;
   Interval x = below_zero(step.squaredNorm(), step.dot(across),

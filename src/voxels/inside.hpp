@@ -7,24 +7,24 @@
 
 namespace bernal {
 
-/// The voxels of a row whose centres lie in a domain: first <= i <= last.
+/// The voxels of a row with centres in a domain: first <= i <= last.
 struct InsideRun {
   std::int64_t row, first, last;
 };
 
-/// Which voxels of a grid have their centres in a domain, to rounding, by where lines along x cross its
-/// walls.
+/// Finds the voxels of a grid with centres in a domain, to rounding, from the crossings of lines along x with
+/// its walls.
 ///
-/// A line through the centres of a row crosses the facets of a mesh an even number of times, however it
-/// meets edges and vertices: whether it passes an edge is decided by the same doubles for both facets there,
-/// and a point on the edge counts for one of its sides. Const, and for several threads at once.
+/// A line through the centres of a row crosses the facets of a mesh an even number of times, even through
+/// edges and vertices: on which side it passes an edge is decided by the same doubles for both facets, and a
+/// point on the edge counts for one side. Const, and safe for several threads.
 class Inside {
  public:
-  /// Both outlive this.
+  /// Both must outlive this.
   Inside(const Domain& domain, const VoxelGrid& grid);
 
-  /// Replaces `out` by the runs of a layer, rows ascending. Cost: some ns a row, and for a mesh 1 ns for each
-  /// of its triangles.
+  /// Replaces `out` by the runs of a layer, rows ascending. Cost: some ns a row, and for a mesh 1 ns a
+  /// triangle.
   void layer(std::int64_t k, std::vector<InsideRun>& out) const;
 
  private:
@@ -40,7 +40,7 @@ class Inside {
   Interval interval(const Sphere&, double y, double z) const;
   void cross(const Mesh&, double z, std::vector<Crossing>& out) const;
   void cross(const Polygon&, double z, std::vector<Crossing>& out) const;
-  /// The first row whose centre is at y or above.
+  /// The first row with its centre at y or above.
   std::int64_t row_from(double y) const;
 
   const Domain& domain_;

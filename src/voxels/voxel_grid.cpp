@@ -11,8 +11,8 @@ namespace bernal {
 namespace {
 
 constexpr double most_voxels = 0x1p40, most_along_axis = 0x1p31, most_in_layer = 0x1p30;
-/// Of a voxel along an axis with n voxels, n times this is left uncovered rather than covered by another one:
-/// far more than the rounding of an edge that is a multiple of a voxel's.
+/// Along an axis with n voxels, n times this share of a voxel may stay uncovered, so that rounding of an edge
+/// that is a multiple of a voxel's does not add another voxel.
 constexpr double slack = 1e-9;
 
 void require_dimension(const Domain& domain) {
@@ -35,7 +35,7 @@ VoxelGrid grid_of_edge(const Domain& domain, double edge) {
     counts[k] = std::max(1.0, periods[k] > 0 ? std::round(n) : std::ceil(n * (1 - slack)));
   }
   const double layer = counts[0] * counts[1], all = layer * counts[2];
-  // (NaN, too, where an edge is infinitely small.)
+  // (Also NaN, for an infinitely small edge.)
   if (!(*std::max_element(counts, counts + 3) < most_along_axis && layer <= most_in_layer &&
         all <= most_voxels))
     throw Error(ErrorCode::bad_argument,

@@ -22,15 +22,15 @@ static_assert(std::endian::native == std::endian::little, "the bytes below are h
 using Index = std::int64_t;
 
 constexpr std::size_t slab_bytes = std::size_t{64} << 20;
-/// What a ball's fractions cost a slab beside its voxels, that of the planes along z, is shared by its
-/// layers: a slab has at least so many, up to this size.
+/// The work of a ball's fractions in a slab besides its voxels, that of the planes along z, is shared by its
+/// layers: a slab has at least this many, up to this size.
 constexpr Index layers_of_sums = 8;
 constexpr std::size_t slab_bytes_of_sums = std::size_t{512} << 20;
-/// Of a tile, what a core keeps in its own cache; sums of fractions are of eight bytes and cost more at the
-/// edges of tiles, so that these are larger.
+/// A tile fits a core's own cache; sums of fractions have eight bytes and more work at the edges of tiles, so
+/// their tiles are larger.
 constexpr Index tile_bytes = Index{1} << 20, tile_bytes_of_sums = Index{4} << 20;
 
-/// A sphere in one of its images.
+/// An image of a sphere.
 struct Ball {
   Vector<3> center;
   double radius;
@@ -43,12 +43,12 @@ struct Span {
   bool empty() const { return first >= last; }
 };
 
-/// Rows and layers that one thread fills.
+/// Rows and layers for one thread.
 struct Tile {
   Span y, z;
 };
 
-/// What a voxel is called.
+/// The value of a voxel.
 template <class Voxel>
 struct Names {
   static constexpr Voxel outside = sizeof(Voxel) == 1 ? 2 : static_cast<Voxel>(~0u);
@@ -86,7 +86,7 @@ class Image {
   Index row_length() const { return grid_.count[0]; }
   Index layer_length() const { return grid_.count[0] * grid_.count[1]; }
 
-  /// All images that reach into the grid between those layers, in the order of the spheres.
+  /// All images that reach into these layers of the grid, in the order of the spheres.
   std::vector<Ball> balls_in(Span z) const {
     Vector<3> lower, upper;
     for (int k = 0; k < 3; ++k) {
@@ -120,7 +120,7 @@ class Image {
     return balls;
   }
 
-  /// Tiles of about so many rows.
+  /// Tiles of about `rows` rows.
   std::vector<Tile> tiles_of(Span z, Index rows) const {
     rows = std::max<Index>(rows, 1);
     const Index deep = std::min(z.last - z.first,
@@ -146,7 +146,7 @@ class Image {
     });
   }
 
-  /// The voxels of `within` whose centres x have in(x); those x are the ones up to about `half` from c.
+  /// The voxels of `within` whose centres x satisfy in(x), which are those up to about `half` from c.
   template <class In>
   Span run_of(int axis, Span within, double c, double half, const In& in) const {
     const double per_edge = 1 / grid_.spacing[axis], at = (c - grid_.corner[axis]) * per_edge - 0.5,
@@ -154,7 +154,7 @@ class Image {
     const auto low = static_cast<double>(within.first), high = static_cast<double>(within.last);
     auto first = static_cast<Index>(std::clamp(std::ceil(at - reach), low, high));
     auto last = static_cast<Index>(std::clamp(std::floor(at + reach) + 1, low, high));
-    // The rounding of these may have cost a voxel at an end, or added one.
+    // Rounding may have lost or added a voxel at an end.
     while (first > within.first && in(grid_.center(axis, first - 1))) --first;
     while (first < within.last && first <= last && !in(grid_.center(axis, first))) ++first;
     if (first > last || first == within.last || !in(grid_.center(axis, first))) return {0, 0};
@@ -167,7 +167,7 @@ class Image {
   template <class T>
   void label_tile(const Tile& tile, Index first_layer, const std::vector<Ball>& balls, T* layers) const {
     const double low = grid_.plane(1, tile.y.first), high = grid_.plane(1, tile.y.last);
-    // Backwards, so that the first of several spheres has the last word.
+    // Backwards, so that the first of several spheres is written last.
     for (auto ball = balls.rbegin(); ball != balls.rend(); ++ball) {
       const double r = ball->radius, squared = r * r, x = ball->center[0], y = ball->center[1],
                    z = ball->center[2];
@@ -189,7 +189,7 @@ class Image {
     }
   }
 
-  /// The planes of cells that a ball reaches along an axis, in its radii; how many cells, and the first.
+  /// The planes of cells that a ball reaches along an axis, in its radii; returns the cells.
   Span planes_of(int axis, Span within, const Ball& ball, std::vector<double>& planes) const {
     const double c = ball.center[axis], corner = grid_.corner[axis], edge = grid_.spacing[axis];
     const auto low = static_cast<double>(within.first), high = static_cast<double>(within.last);
@@ -237,7 +237,7 @@ class Image {
   std::optional<Inside> inside_;
 };
 
-/// Each is drawn as often as its images reach into the grid: a sphere of a packing at most eight times.
+/// Each sphere is drawn once an image; a sphere of a packing has at most eight.
 void require_few_images(const Spheres<dynamic>& spheres, const Domain& domain) {
   constexpr double most_images = 1e6;
   const Vector<3> periods = periods_of(domain);

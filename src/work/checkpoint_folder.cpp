@@ -1,7 +1,6 @@
 #include "work/checkpoint_folder.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,10 +9,13 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "files/descriptor.hpp"
+#include "files/folder_tree.hpp"
 
 namespace fs = std::filesystem;
 
@@ -58,32 +60,17 @@ class SumOfBytes {
               {path.string()});
 }
 
-/// An open file that is closed.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
-
 /// Whatever has that name goes: a link or a pipe would lead elsewhere.
-int new_file(const fs::path& path) {
+Descriptor new_file(const fs::path& path) {
   std::error_code ignored;
   fs::remove(path, ignored);
-  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  return Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
 }
 
 class FileWriter final : public Archive {
  public:
   explicit FileWriter(const fs::path& path) : path_(path), file_(new_file(path)) {
-    if (file_.number() < 0) fail_to_write(path);
+    if (!file_.is_open()) fail_to_write(path);
     buffer_.reserve(block_bytes);
   }
   bool reads() const override { return false; }
@@ -91,8 +78,8 @@ class FileWriter final : public Archive {
   void finish() {
     flush();
     const std::uint64_t end[] = {written_, sum_.value()};
-    put(reinterpret_cast<const char*>(end), sizeof end);
-    if (::fsync(file_.number()) != 0) fail_to_write(path_);
+    if (!file_.write({reinterpret_cast<const char*>(end), sizeof end}) || ::fsync(file_.number()) != 0)
+      fail_to_write(path_);
   }
 
  private:
@@ -110,18 +97,9 @@ class FileWriter final : public Archive {
 
   void flush() {
     sum_.add(buffer_.data(), buffer_.size());
-    put(buffer_.data(), buffer_.size());
+    if (!file_.write(buffer_)) fail_to_write(path_);
     written_ += buffer_.size();
     buffer_.clear();
-  }
-  void put(const char* next, std::size_t count) {
-    while (count > 0) {
-      const ssize_t written = ::write(file_.number(), next, count);
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail_to_write(path_);
-      next += written;
-      count -= static_cast<std::size_t>(written);
-    }
   }
 
   fs::path path_;
@@ -136,7 +114,7 @@ class FileReader final : public Archive {
   explicit FileReader(const fs::path& path)
       : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK)) {
     struct stat facts {};
-    if (file_.number() < 0 || ::fstat(file_.number(), &facts) != 0 || !S_ISREG(facts.st_mode)) return;
+    if (!file_.is_open() || ::fstat(file_.number(), &facts) != 0 || !S_ISREG(facts.st_mode)) return;
     if (facts.st_size < static_cast<off_t>(end_bytes)) return;
     size_ = static_cast<std::uint64_t>(facts.st_size) - end_bytes;
     is_whole_ = matches_its_sum();
@@ -225,20 +203,14 @@ class FileReader final : public Archive {
 
 CheckpointFolder::CheckpointFolder(const fs::path& result) : folder_(result / folder_name) {}
 
-CheckpointFolder::~CheckpointFolder() {
-  if (lock_ >= 0) ::close(lock_);
-}
-
 /// Returns false where another process has it. Where file systems know no locks everybody has it.
 bool CheckpointFolder::hold() {
-  if (lock_ >= 0) return true;
-  const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
-  if (folder < 0) fail_to_write(folder_);
-  if (::flock(folder, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    ::close(folder);
-    return false;
-  }
-  lock_ = folder;
+  if (lock_.of().is_open()) return true;
+  Lock lock(FolderTree(folder_.parent_path()).open_folder(folder_name));
+  errno = lock.why_not();
+  if (!lock.of().is_open()) fail_to_write(folder_);
+  if (lock.is_elsewhere()) return false;
+  lock_ = std::move(lock);
   return true;
 }
 
@@ -267,7 +239,7 @@ void CheckpointFolder::write(CheckpointOwner& owner, const std::function<void(Ar
   if (::rename((folder_ / latest).c_str(), (folder_ / before_it).c_str()) != 0 && errno != ENOENT)
     fail_to_write(folder_ / before_it);
   if (::rename(fresh.c_str(), (folder_ / latest).c_str()) != 0) fail_to_write(folder_ / latest);
-  ::fsync(lock_);
+  ::fsync(lock_.of().number());
 }
 
 std::unique_ptr<Archive> CheckpointFolder::open(const CheckpointOwner& owner, std::string& note) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/archive.hpp"
+#include "files/lock.hpp"
 
 namespace bernal {
 
@@ -34,9 +35,6 @@ class CheckpointFolder {
  public:
   /// Of the folder that will hold the result. Nothing is made yet.
   explicit CheckpointFolder(const std::filesystem::path& result);
-  ~CheckpointFolder();
-  CheckpointFolder(const CheckpointFolder&) = delete;
-  CheckpointFolder& operator=(const CheckpointFolder&) = delete;
 
   const std::filesystem::path& path() const { return folder_; }
 
@@ -57,7 +55,7 @@ class CheckpointFolder {
  private:
   bool hold();
   std::filesystem::path folder_;
-  int lock_ = -1;
+  Lock lock_;
 };
 
 }  // namespace bernal

@@ -4,8 +4,8 @@
 #include <functional>
 #include <numeric>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/tolerance.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "core/every_dimension.hpp"
 #include "core/parallel.hpp"
 #include "domain/dyadic.hpp"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "bernal/domain/boundary.hpp"
+#include "bernal/core/boundary.hpp"
 #include "core/every_dimension.hpp"
 #include "core/parallel.hpp"
 #include "near/counting_sort.hpp"

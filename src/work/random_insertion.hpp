@@ -4,10 +4,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "near/cell_grid.hpp"
 
 namespace bernal {

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Whether every link in the project's Markdown leads to a file that is there, and to a heading in it."""
+"""Whether every link in the project's Markdown leads to a file that is there, and to a heading in it; and whether the
+files exist that the pages for developers and the comments in the code name."""
 
 import pathlib
 import re
@@ -7,6 +8,8 @@ import sys
 import urllib.parse
 
 SOURCE = pathlib.Path(sys.argv[1]).resolve()
+# A file in a folder, as in `cad/read/zip_archive.hpp`; made files and patterns such as `write_<ext>.cpp` are left out.
+NAMED = re.compile(r"(?<![\w/.<>*$-])([a-z_]+(?:/[a-z0-9_.-]+)+\.(?:hpp|cpp|cu|py|cmake|txt|md|json|toml))(?![\w<*])")
 LINK = re.compile(r"\]\(([^()\s]+(?:\([^()]*\)[^()\s]*)*)\)")
 
 
@@ -28,6 +31,23 @@ def anchors_of(text):
     return anchors
 
 
+def named_files():
+    """(Where, file) of each file that a page for developers names in backticks, or a comment in the code."""
+    for page in ("CONTRIBUTING.md", "src/README.md"):
+        for code in re.findall(r"`([^`\n]*)`", re.sub(r"^```.*?^```$", "", (SOURCE / page).read_text(), flags=re.S | re.M)):
+            yield from ((page, name) for name in NAMED.findall(code))
+    for folder in ("src", "include", "apps", "tests"):
+        for file in sorted((SOURCE / folder).rglob("*.[hc]pp")):
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                comment = re.search(r"(?<!:)//.*", line)
+                for name in NAMED.findall(comment[0]) if comment else []:
+                    yield f"{file.relative_to(SOURCE)}:{number}", name
+
+
+def is_there(name):
+    return any((SOURCE / root / name).exists() for root in ("", "src", "include", "include/bernal", "tests"))
+
+
 def main():
     files = [SOURCE / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "src/README.md")]
     files += sorted(SOURCE.glob("data/**/*.md")) + sorted(SOURCE.glob("tests/bench/*.md"))
@@ -43,8 +63,10 @@ def main():
                 problems.append(f"{file}: {link} leads nowhere")
             elif anchor and target.suffix == ".md" and anchor not in anchors_of(target.read_text()):
                 problems.append(f"{file}: {link}: no heading makes that anchor")
+    named = list(named_files())
+    problems += [f"{where}: there is no {name}" for where, name in named if not is_there(name) and "build/" not in name]
     print("\n".join(problems) or f"{links} links in {len(files)} files lead somewhere")
-    sys.exit(bool(problems) or links < 50)
+    sys.exit(bool(problems) or links < 50 or len(named) < 50)
 
 
 if __name__ == "__main__":

@@ -114,7 +114,7 @@ TEST_P(EveryPacking, StaysCertifiedAtAnyScaleAndFarAway) {
 }
 
 /// The radii are those that the seed draws, in their order and to the last bit; in a container less those
-/// that found no place: no more than the window of stages/supply.hpp holds.
+/// that found no place: no more than the window of work/supply.hpp holds.
 TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
   const Plan plan = GetParam().plan();
   const Packing packing = run_with(plan);

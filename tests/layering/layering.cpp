@@ -11,9 +11,9 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t`/");
+  const auto first = text.find_first_not_of(' ');
   if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t`/") - first + 1);
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -30,29 +30,20 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-Rule parse_rule(const std::string& text, const std::set<std::string>& all_rooms) {
+/// `above` are the rooms of the rows before, the only ones that the text may name: so no rooms form a cycle.
+Rule parse_rule(const std::string& text, const std::set<std::string>& above) {
   Rule rule;
   if (text == "nothing") return rule;
-  if (text == "public headers") {
-    rule.public_headers_only = true;
-    return rule;
-  }
-  if (text.starts_with("all but ")) {
-    rule.rooms = all_rooms;
-    static const std::regex but(R"(([a-z]+)(?: but ([a-z_.]+))?)");
-    for (const std::string& part : split(text.substr(8), ',')) {
-      std::smatch match;
-      if (!std::regex_match(part, match, but) || rule.rooms.erase(match[1]) == 0)
-        throw std::runtime_error("src/README.md: no room is called " + part);
-      if (match[2].matched) rule.files[match[1]].insert(match[2]);
-    }
-    return rule;
-  }
+  rule.public_headers_only = text == "public headers";
+  if (text == "what stands above") rule.rooms = above;
+  if (rule.public_headers_only || !rule.rooms.empty()) return rule;
   static const std::regex item(R"(([a-z]+)(?: \(([a-z_.]+) only\))?)");
   for (const std::string& part : split(text, ',')) {
     std::smatch match;
-    if (!std::regex_match(part, match, item) || !all_rooms.contains(match[1]))
+    if (!std::regex_match(part, match, item))
       throw std::runtime_error("src/README.md: cannot read \"" + part + "\" in the table of rooms");
+    if (!above.contains(match[1]))
+      throw std::runtime_error("src/README.md: no room above is called " + match[1].str());
     if (match[2].matched)
       rule.files[match[1]].insert(match[2]);
     else
@@ -175,17 +166,15 @@ std::vector<std::string> option_words(const fs::path& root) {
 std::map<std::string, Rule> read_rules(const fs::path& readme) {
   std::ifstream in(readme);
   if (!in) throw std::runtime_error("cannot read " + readme.string());
-  std::map<std::string, std::string> rows;
-  std::set<std::string> rooms;
-  for (std::string text; std::getline(in, text);) {
-    if (!text.starts_with("| `")) continue;
-    const std::vector<std::string> cells = split(text, '|');
-    if (cells.size() != 5) throw std::runtime_error(readme.string() + ": a row without three cells: " + text);
-    rows[cells[1]] = cells[3];
-    rooms.insert(cells[1]);
-  }
   std::map<std::string, Rule> rules;
-  for (const auto& [room, text] : rows) rules[room] = parse_rule(text, rooms);
+  std::set<std::string> above;
+  static const std::regex row(R"(\|[^|]*\| `([a-z]+)/` \|[^|]*\| ([^|]+) \|)");
+  for (std::string text; std::getline(in, text);) {
+    std::smatch match;
+    if (!std::regex_match(text, match, row)) continue;
+    rules[match[1]] = parse_rule(match[2], above);
+    above.insert(match[1]);
+  }
   return rules;
 }
 

@@ -15,8 +15,8 @@ struct Rule {
   std::map<std::string, std::set<std::string>> files;  ///< of these rooms only these files
 };
 
-/// One rule a room, read from the table in src/README.md; its third column says
-/// "nothing", "public headers", "all but A, B" or "A, B (file.hpp only)".
+/// One rule a room, read from the table in src/README.md; its last column says "nothing", "public headers",
+/// "what stands above" or "A, B (file.hpp only)". Throws where that names a room that does not stand above.
 std::map<std::string, Rule> read_rules(const std::filesystem::path& readme);
 
 /// Every include below src/, include/ and apps/ of `root` that the rules forbid, as "file:line: why".

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/dimension.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "hard/hard_spheres.hpp"
 #include "near/cell_grid.hpp"
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "hard/home_grid.hpp"
 #include "near/cell_grid.hpp"
 #include "near/partial_grid.hpp"

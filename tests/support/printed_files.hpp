@@ -10,7 +10,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
-#include "cad/polygon_soup.hpp"
+#include "cad/read/polygon_soup.hpp"
 #include "support/cad_formats.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cad/repaired_mesh.hpp"
-#include "cad/self_intersections.hpp"
+#include "cad/diagnose/self_intersections.hpp"
+#include "cad/repair/repaired_mesh.hpp"
 #include "geometry/topology.hpp"
 #include "support/meshes.hpp"
 

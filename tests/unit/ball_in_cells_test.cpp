@@ -9,9 +9,13 @@
 #include <boost/math/quadrature/gauss.hpp>
 
 #include "bernal/core/random.hpp"
+#include "support/ball_in_box.hpp"
 
 namespace bernal {
 namespace ball_in_cells_test {
+
+using testing::ball_in_box;
+using testing::disc_in_rectangle;
 
 constexpr double pi = std::numbers::pi;
 

@@ -8,8 +8,8 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
-#include "cad/cgal_surfaces.hpp"
-#include "cad/hollows.hpp"
+#include "cad/repair/cgal_surfaces.hpp"
+#include "cad/repair/hollows.hpp"
 #include "support/broken_meshes.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
-#include "cad/caged_reader.hpp"
-#include "cad/caged_repair.hpp"
+#include "cad/read/caged_reader.hpp"
+#include "cad/repair/caged_repair.hpp"
 #include "core/parallel.hpp"
 
 namespace bernal {
@@ -24,7 +24,7 @@ namespace cage_test {
 
 using cad::ReadAttempt;
 
-constexpr cad::CageLimits narrow = {std::uint64_t{256} << 20U, 1};
+constexpr CageLimits narrow = {std::uint64_t{256} << 20U, 1};
 
 std::string failure_of(const std::function<void()>& act) {
   return cad::read_in_cage("the reader", narrow,
@@ -78,7 +78,7 @@ TEST(Cage, SaysWhatBefellTheReader) {
 TEST(Cage, TellsAnExceptionAsItself) {
   std::uint64_t made = 0;
   const auto befell = [&](const std::function<void()>& work) {
-    return cad::run_in_cage("the writer", narrow, work, [&](Archive& a) { a(made); });
+    return run_in_cage("the writer", narrow, work, [&](Archive& a) { a(made); });
   };
   EXPECT_EQ(befell([&] { made = 7; }), "");
   EXPECT_EQ(made, 7u);

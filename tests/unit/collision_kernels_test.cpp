@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "hard/collision_kernels.hpp"
 
 namespace bernal {

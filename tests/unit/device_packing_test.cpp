@@ -3,9 +3,9 @@
 #include <cmath>
 #include <set>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "soft/device_packing.hpp"
 #include "soft/growing_box.hpp"
 #include "soft/soft_packing.hpp"

@@ -16,7 +16,7 @@
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "engine/child.hpp"
+#include "process/child.hpp"
 #include "support/folder.hpp"
 
 namespace bernal {

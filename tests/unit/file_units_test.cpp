@@ -7,8 +7,8 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
-#include "cad/file_facts.hpp"
-#include "cad/polygon_soup.hpp"
+#include "cad/read/file_facts.hpp"
+#include "cad/read/polygon_soup.hpp"
 #include "support/cad_formats.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 
 namespace bernal {
 namespace fixed_point_grid_test {

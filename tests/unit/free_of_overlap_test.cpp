@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "support/nearest_images.hpp"
 
 // How far a box must grow: against all pairs, and proved with rational numbers.

@@ -1,5 +1,5 @@
 // The hollow of thick-walled vessels, closed across their openings, against what they hold in closed form.
-#include "cad/hollows.hpp"
+#include "cad/repair/hollows.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "cad/cgal_surfaces.hpp"
+#include "cad/repair/cgal_surfaces.hpp"
 #include "support/broken_meshes.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "cad/plane_cut.hpp"
+#include "cad/repair/plane_cut.hpp"
 #include "support/broken_meshes.hpp"
 #include "support/folder.hpp"
 #include "support/meshes.hpp"

@@ -1,4 +1,4 @@
-#include "cad/mesh_distance.hpp"
+#include "cad/diagnose/mesh_distance.hpp"
 
 #include <gtest/gtest.h>
 

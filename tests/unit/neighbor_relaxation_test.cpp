@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/dimension.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "support/periodic.hpp"
 
 namespace bernal {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "cad/diagnose_mesh.hpp"
-#include "cad/files_of_part.hpp"
-#include "cad/make_triangles.hpp"
-#include "cad/mesh_distance.hpp"
-#include "cad/polygon_soup.hpp"
+#include "cad/diagnose/diagnose_mesh.hpp"
+#include "cad/diagnose/mesh_distance.hpp"
+#include "cad/read/files_of_part.hpp"
+#include "cad/read/make_triangles.hpp"
+#include "cad/read/polygon_soup.hpp"
 #include "support/folder.hpp"
 
 namespace bernal {

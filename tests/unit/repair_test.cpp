@@ -10,9 +10,9 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
-#include "cad/mesh_distance.hpp"
-#include "cad/repair_crossings.hpp"
-#include "cad/repair_holes.hpp"
+#include "cad/diagnose/mesh_distance.hpp"
+#include "cad/repair/repair_crossings.hpp"
+#include "cad/repair/repair_holes.hpp"
 #include "support/broken_meshes.hpp"
 #include "support/repaired_mesh.hpp"
 

@@ -8,7 +8,7 @@
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "cad/files_of_part.hpp"
+#include "cad/read/files_of_part.hpp"
 #include "files/sha256.hpp"
 #include "support/cad_formats.hpp"
 #include "support/meshes.hpp"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bernal/core/random.hpp"
-#include "cad/self_intersections.hpp"
-#include "cad/separation.hpp"
+#include "cad/diagnose/self_intersections.hpp"
+#include "cad/diagnose/separation.hpp"
 
 namespace bernal {
 namespace self_intersections_test {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "hard/shells.hpp"
 
 namespace bernal {

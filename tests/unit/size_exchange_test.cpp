@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "soft/crowd.hpp"
 #include "soft/soft_engine.hpp"
 #include "support/periodic.hpp"

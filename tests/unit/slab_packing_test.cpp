@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "slabs/drawn_spheres.hpp"
 #include "slabs/slab_relaxation.hpp"
 #include "support/folder.hpp"

@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "soft/soft_packing.hpp"
 
 namespace bernal {

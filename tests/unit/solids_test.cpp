@@ -8,10 +8,9 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
-#include "solids/flat_faces.hpp"
 #include "solids/narrow_places.hpp"
+#include "support/ball_in_box.hpp"
 #include "support/export_packings.hpp"
-#include "support/meshes.hpp"
 
 namespace bernal {
 namespace solids_test {
@@ -50,6 +49,26 @@ std::vector<Packing> periodic_packings() {
           testing::exports::periodic()};
 }
 
+/// The solids with the periods where they are.
+Solids solids_in_place(const Packing& packing) {
+  Solids made{
+      .spheres = packing.spheres, .domain = packing.domain, .pieces = {}, .bridges = {}, .contacts = {}};
+  wrap(made.spheres, made.domain);
+  made.pieces = pieces_of(made.spheres, made.domain);
+  return made;
+}
+
+double volume_between_ends(const Piece& piece) {
+  Bounds<3> box{piece.center - Vector<3>::Constant(2 * piece.radius),
+                piece.center + Vector<3>::Constant(2 * piece.radius)};
+  for (const Cut& cut : piece.cuts) {
+    if (cut.face == Cut::contact) continue;
+    const int axis = cut.face / 2;
+    (cut.face % 2 == 0 ? box.lower : box.upper)[axis] = cut.keeps.normal[axis] * cut.keeps.offset;
+  }
+  return testing::ball_in_box(piece.center, piece.radius, box);
+}
+
 double volume_of_balls_by_hand(const Spheres<dynamic>& spheres) {
   double sum = 0;
   for (const double r : spheres.r) sum += 4. / 3 * std::numbers::pi * r * r * r;
@@ -58,8 +77,7 @@ double volume_of_balls_by_hand(const Spheres<dynamic>& spheres) {
 
 TEST(Solids, PiecesMakeUpTheBalls) {
   for (const Packing& packing : periodic_packings())
-    for (const bool move_ends : {false, true}) {
-      const Solids solids = solids_of(packing.spheres, packing.domain, {.move_ends = move_ends});
+    for (const Solids& solids : {solids_in_place(packing), solids_of(packing.spheres, packing.domain, {})}) {
       double sum = 0;
       for (const Piece& piece : solids.pieces) sum += volume_between_ends(piece);
       // A few roundoffs a piece.
@@ -71,7 +89,7 @@ TEST(Solids, PiecesMakeUpTheBalls) {
 TEST(Solids, WhatOneEndCutsOffStandsAtTheOther) {
   std::size_t cuts = 0;
   for (const Packing& packing : periodic_packings()) {
-    const Solids solids = solids_of(packing.spheres, packing.domain, {.move_ends = false});
+    const Solids solids = solids_in_place(packing);
     const Boundary<3> boundary = boundary_of<3>(solids.domain);
     for (const Piece& piece : solids.pieces)
       for (const Cut& cut : piece.cuts) {
@@ -346,49 +364,6 @@ TEST(Solids, EndsStayClearOfSpheres) {
     EXPECT_NEAR(clear.distance, least, 1e-9);
     EXPECT_GT(least, 0.005);
   }
-}
-
-TEST(Solids, FlatFacesCoverTheMesh) {
-  const Mesh box = test::box_mesh({1, 2, 3}, {2, 3, 4}), prism = test::prism_mesh(7, 2, 5);
-  EXPECT_EQ(flat_faces_of(box, 1e-9).size(), 6u);
-  EXPECT_EQ(flat_faces_of(prism, 1e-9).size(), 9u);
-  for (const Mesh& mesh : {box, prism}) {
-    double volume = 0;  // by the divergence theorem, each polygon as a fan
-    for (const FlatFace& face : flat_faces_of(mesh, 1e-9))
-      for (const auto& loop : face.loops)
-        for (std::size_t k = 1; k + 1 < loop.size(); ++k)
-          volume += mesh.vertices[loop[0]].dot(mesh.vertices[loop[k]].cross(mesh.vertices[loop[k + 1]])) / 6;
-    EXPECT_NEAR(volume, volume_of(mesh), 1e-12 * volume);
-  }
-}
-
-/// In a plate with a square hole the top is one face of two loops.
-TEST(Solids, FlatFacesHaveHoles) {
-  Mesh frame;
-  for (const double z : {0., 1.})
-    for (const double half : {2., 1.})
-      for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
-        frame.vertices.emplace_back(half * x, half * y, z);
-  for (std::uint32_t i = 0; i < 4; ++i) {
-    const std::uint32_t j = (i + 1) % 4;
-    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-      frame.triangles.push_back({a, b, c});
-      frame.triangles.push_back({a, c, d});
-    };
-    quad(i, j, 8 + j, 8 + i);            // outside
-    quad(4 + j, 4 + i, 12 + i, 12 + j);  // in the hole
-    quad(8 + i, 8 + j, 12 + j, 12 + i);  // top
-    quad(j, i, 4 + i, 4 + j);            // bottom
-  }
-  ASSERT_NEAR(volume_of(frame), 12, 1e-12);
-  std::size_t with_holes = 0;
-  const std::vector<FlatFace> faces = flat_faces_of(frame, 1e-9);
-  for (const FlatFace& face : faces) {
-    with_holes += face.loops.size() == 2;
-    for (const std::uint32_t v : face.loops.front()) EXPECT_EQ(face.loops.size() == 2 && v % 8 >= 4, false);
-  }
-  EXPECT_EQ(faces.size(), 10u);
-  EXPECT_EQ(with_holes, 2u);
 }
 
 TEST(Solids, NarrowPlacesAreAtContacts) {

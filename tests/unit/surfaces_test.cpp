@@ -12,14 +12,15 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
-#include "cad/self_intersections.hpp"
+#include "cad/diagnose/self_intersections.hpp"
+#include "support/ball_in_box.hpp"
 #include "surfaces/icosphere.hpp"
-#include "voxels/ball_in_cells.hpp"
 
 namespace bernal {
 namespace surfaces_test {
 
 using Rational = boost::multiprecision::cpp_rational;
+using testing::ball_in_box;
 
 const Monitor nobody;
 

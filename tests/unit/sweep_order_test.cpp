@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/random.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "soft/sweep_order.hpp"
 
 namespace bernal {

@@ -1,5 +1,5 @@
 // Results that a run was killed over putting in place, in folders of one's own and of somebody else.
-#include "result/unpublished.hpp"
+#include "scene/unpublished.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

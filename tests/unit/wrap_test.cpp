@@ -1,4 +1,4 @@
-#include "cad/wrap.hpp"
+#include "cad/repair/wrap.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <random>
 
 #include "bernal/core/error.hpp"
-#include "cad/caged_repair.hpp"
-#include "cad/mesh_distance.hpp"
+#include "cad/diagnose/mesh_distance.hpp"
+#include "cad/repair/caged_repair.hpp"
 #include "cad/triangle_tree.hpp"
 #include "support/repaired_mesh.hpp"
 

@@ -7,22 +7,22 @@
 
 namespace bernal {
 
-/// A place where a surface fails to be a wall.
+/// A place where a surface fails as a wall.
 struct Defect {
   std::string what;  ///< "hole", "crossing", "edge with more than two faces"
-  Vector<3> at;      ///< in the middle of it
-  double across;     ///< how wide it is
+  Vector<3> at;      ///< in the middle of the defect
+  double across;     ///< width of the defect
 };
 
-/// What a CAD file is, as far as being a container matters. Lengths are in the unit that was asked for, or
-/// else the file's own.
+/// What the importer found in a CAD file. Lengths are in the requested unit, or in the file's own if none was
+/// requested.
 struct MeshReport {
-  std::string reader;     ///< which reader's coordinates were used and why, one phrase
-  std::string unit;       ///< of the file's coordinates: what it says, or "" where it says nothing
-  double metres = 0;      ///< one unit of the file's; 0 where it says nothing
-  double deflection = 0;  ///< of a true surface, as it was tessellated; 0 where the file holds none
-  char up = 0;            ///< which axis the file says is up: 'x', 'y', 'z'; 0 where it says nothing
-  std::vector<std::string> solids;  ///< by what names the file tells its parts apart
+  std::string reader;     ///< the reader whose coordinates were used, and why, one phrase
+  std::string unit;       ///< of the file's coordinates, as the file states it; "" if it does not
+  double metres = 0;      ///< one unit of the file in metres; 0 if the file does not say
+  double deflection = 0;  ///< linear deflection of the tessellation; 0 if the file holds no true surfaces
+  char up = 0;            ///< the file's upward axis: 'x', 'y' or 'z'; 0 if it does not say
+  std::vector<std::string> solids;  ///< names of the file's parts
   std::vector<std::string> notes;   ///< what else the file says, or how it was read, one phrase each
   std::uint64_t faces = 0;          ///< triangles after triangulation and welding
   std::uint64_t vertices = 0;       ///< distinct points
@@ -33,20 +33,22 @@ struct MeshReport {
   std::uint64_t misoriented_edges = 0;  ///< traversed twice in the same direction by their two faces
   std::uint64_t degenerate_faces = 0;
   std::uint64_t duplicate_faces = 0;
-  std::uint64_t self_intersections = 0;  ///< pairs of faces, counted up to 50,000 and two for every face
+  std::uint64_t self_intersections = 0;  ///< pairs of faces, counted up to 50,000 plus two per face
   std::uint64_t components = 0;
-  std::int64_t genus = 0;  ///< sum over components, where closed
-  double volume = 0;       ///< enclosed, 0 unless usable
-  /// What the hollow of a usable part holds that is a shell with an opening, and so rather the wall around
-  /// what is meant; 0 where it is none.
+  std::int64_t genus = 0;  ///< sum over components; only if closed
+  double volume = 0;       ///< enclosed volume; 0 unless usable
+  /// Volume of the hollow, if the usable part is a shell with an opening, so that the file probably models
+  /// the wall around the intended container; else 0.
   double hollow_volume = 0;
   double area = 0;
   Bounds<3> bounds;
-  std::string orientation;      ///< as read: "outward", "inward", "mixed"; "consistent" where there is no out
-  std::vector<Defect> defects;  ///< the worst of each kind, a few of them
-  std::vector<std::string> repairs;   ///< what is done before use, one phrase each
-  bool is_repaired = false;           ///< the wall is no longer the file's surface: some of it was made up
-  std::vector<std::string> cautions;  ///< what may not be as it is meant though it can be a container
+  /// As read: "outward", "inward", "mixed"; "consistent" if there is no outside.
+  std::string orientation;
+  std::vector<Defect> defects;       ///< the worst few of each kind
+  std::vector<std::string> repairs;  ///< repairs made before use, one phrase each
+  /// The wall differs from the file's surface, which was completed or replaced.
+  bool is_repaired = false;
+  std::vector<std::string> cautions;  ///< what may not be as intended, although the mesh can be a container
   std::vector<std::string> problems;  ///< why it cannot be a container, with counts; empty if it can
   bool usable() const { return problems.empty(); }
 };

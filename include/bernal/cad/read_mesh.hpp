@@ -18,16 +18,17 @@ struct ImportedMesh {
   MeshReport report;
 };
 
-/// What the import of a file depends on beside its options.
+/// What an import depends on besides its options.
 struct ImportFor {
-  std::optional<Unit> unit = {};  ///< of the coordinates that are made; the file's own if absent
-  /// Of the spheres, in that unit: true surfaces are tessellated to within a fiftieth of it. 0: unknown.
+  std::optional<Unit> unit = {};  ///< of the returned coordinates; the file's own if absent
+  /// Smallest sphere radius, in that unit; true surfaces are tessellated to within a fiftieth of it. 0:
+  /// unknown.
   double smallest_radius = 0;
-  /// Of processor time, for each of the repairs that the options ask for: one that takes longer is given up.
+  /// Limit of processor time for each requested repair; a repair that takes longer is abandoned.
   double repair_seconds = 600;
 };
 
-/// What the options say is at odds with the file; `option` is the member's name, "unit" or "solids".
+/// An option contradicts the file. `option` is the member's name, "unit" or "solids".
 class OptionError : public Error {
  public:
   OptionError(std::string_view of, const std::string& message)
@@ -35,34 +36,34 @@ class OptionError : public Error {
   std::string option;
 };
 
-/// Whether a file of that name is of a format that is read: STL, OBJ, PLY, OFF, 3MF, AMF, glTF, Collada, FBX,
-/// STEP, IGES, BREP, by its extension in upper or lower case.
+/// Whether the file name's extension, in either case, is that of a format that can be read: STL, OBJ, PLY,
+/// OFF, 3MF, AMF, glTF, Collada, FBX, STEP, IGES, BREP.
 bool is_mesh_file_name(const std::filesystem::path& file);
 /// {".stl", ".obj", …}
 std::span<const std::string_view> mesh_file_endings();
 
-/// Reads a file of any known format, does what the options ask for, and says what came of it. Throws
-/// Error{bad_mesh} when the file is missing, cannot be parsed, holds no faces or coordinates that are not
-/// finite, and OptionError where an option is at odds with it; everything else is told in the report.
-/// Cost: 5 to 10 µs a face, half of it diagnosis; quadratic in the number of faces that meet at one vertex.
+/// Reads a file of any known format, applies the options and reports what it found. Throws Error{bad_mesh} if
+/// the file is missing, cannot be parsed, has no faces or has coordinates that are not finite; throws
+/// OptionError if an option contradicts it. Everything else is in the report. Cost: 5 to 10 µs a face, half
+/// of it for the diagnosis; quadratic in the number of faces at one vertex.
 ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose = {});
 
-/// The same where it must be a container. Throws Error{bad_mesh} with the report's problems in one line, and
-/// what to do about them, when it cannot be one.
+/// The same for a file that must be a container. Throws Error{bad_mesh} with the report's problems and their
+/// remedies in one line if it cannot be one.
 ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose);
 
 enum class Effort {
-  quick,    ///< what takes about as long as reading the file
-  thorough  ///< also a wrap, tried coarsely
+  quick,    ///< about as long as reading the file takes
+  thorough  ///< also tries a coarse wrap
 };
 
-/// Lines for [container] that make a container of a file that is none as it is: each was tried. The first
-/// changes least; none if nothing helps. Lengths in them are in the unit of `purpose`.
+/// Lines for [container] that turn a file that is no container into one; each was tried. The line that
+/// changes least comes first; empty if nothing helps. Lengths are in the unit of `purpose`.
 std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFor& purpose,
                                          const ImportedMesh& as_it_is, Effort effort);
 
-/// Writes a surface as PLY, its faces coloured by what keeps it from being a wall: orange at open edges, blue
-/// at branching ones, red where it crosses itself, grey elsewhere. Throws Error{cannot_write}.
+/// Writes the surface as PLY with defects in colour: orange at open edges, blue at edges with more than two
+/// faces, red at self-intersections, grey elsewhere. Throws Error{cannot_write}.
 void write_places(const ImportedMesh& imported, const std::filesystem::path& file);
 
 }  // namespace bernal

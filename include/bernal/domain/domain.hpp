@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
 #include "bernal/core/vector.hpp"
-#include "bernal/domain/boundary.hpp"
 #include "bernal/geometry/mesh.hpp"
 
 namespace bernal {

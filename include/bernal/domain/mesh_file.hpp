@@ -27,11 +27,9 @@ enum class Repair {
   wrap                 ///< the surface is replaced by one that wraps it
 };
 
-/// As scenes have them: "holes", "self-intersections", "wrap".
-constexpr std::string_view name_of(Repair repair) {
-  constexpr std::string_view names[] = {"holes", "self-intersections", "wrap"};
-  return names[static_cast<int>(repair)];
-}
+/// Their words in a scene.
+inline constexpr std::string_view repair_names[] = {"holes", "self-intersections", "wrap"};
+constexpr std::string_view name_of(Repair repair) { return repair_names[static_cast<int>(repair)]; }
 
 /// Which axis of the file's points up.
 enum class Up { as_in_file, x, y, z };

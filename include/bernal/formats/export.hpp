@@ -11,50 +11,50 @@
 
 namespace bernal {
 
-/// A format in which other programs read packings.
+/// A format that other programs read packings from.
 struct ExportFormat {
   std::string name;   ///< "lammps"
-  std::string what;   ///< for which program, and what of it
-  std::string file;   ///< the name that a scene's output has if it says none: "lammps.data"
-  std::string unit;   ///< of lengths if nothing else is asked for: "m", or "the scene's"
-  std::string sizes;  ///< "diameter", "radius" or "voxels": what the file holds
+  std::string what;   ///< the program, and what the file holds for it
+  std::string file;   ///< default file name of a scene's output: "lammps.data"
+  std::string unit;   ///< default unit of lengths: "m", or "the scene's"
+  std::string sizes;  ///< how the file states sizes: "diameter", "radius" or "voxels"
   int least_dimension = 3, most_dimensions = 3;
-  std::vector<std::string> keys;  ///< what it can be told, see `export_keys`
+  std::vector<std::string> keys;  ///< options of the format, see `export_keys`
 };
-/// All of them, in the order in which people are told of them.
+/// All formats, in the order in which they are listed to users.
 std::vector<ExportFormat> export_formats();
 
-/// What one may say of an output, on a command line or in a scene: "unit", "density", …
+/// An option of an output, on a command line or in a scene: "unit", "density", …
 struct ExportKey {
   std::string name, what;
 };
 std::vector<ExportKey> export_keys();
 
-/// The output that is meant by the name of a format and by words for some of its keys: {{"unit", "mm"}}.
-/// Throws Error{bad_argument} with the nearest name for a format that there is not, and for a key that the
-/// format has not or a word that the key does not take.
+/// The output for a format's name and the values of some keys: {{"unit", "mm"}}. Throws Error{bad_argument},
+/// with the nearest name, for an unknown format, a key that the format does not have, or a value that the key
+/// does not take.
 Output output_of(std::string_view format, const std::map<std::string, std::string>& words = {});
 
-/// What has been written.
+/// The result of `write_export`.
 struct WrittenExport {
-  std::vector<std::filesystem::path> files;  ///< that of the format, then those that go with it
-  /// What the file holds, in one line: count, unit, whether diameters or radii, density, types, and the
-  /// largest overlap where numbers were rounded.
+  std::vector<std::filesystem::path> files;  ///< the format's file, then those that go with it
+  /// What the file holds, in one line: count, unit, diameters or radii, density, types, and the largest
+  /// overlap if numbers were rounded.
   std::string note;
 };
 
-/// Writes a packing as other programs read it, to `file` and, for some formats, to others beside it: all of
-/// them appear whole, or none; files of these names go. Numbers are the shortest decimals that read back as
-/// the same doubles, and those of the packing; where they are converted to another unit they are rounded once
-/// more, and in formats of single precision to that. Then the certificate is asked for the largest overlap of
-/// what the file holds, which the note says.
+/// Writes a packing for other programs to `file`, and for some formats to further files beside it. All appear
+/// whole, or none; existing files of these names are replaced. Numbers are the shortest decimals that read
+/// back as the packing's doubles; conversion to another unit, and to single precision where the format has
+/// it, rounds once more. The note then states the largest overlap of the numbers in the file, by the
+/// certificate.
 ///
-/// Throws Error{bad_scene} where the format cannot hold the packing, Error{cannot_write} where a file of the
-/// packing's own result would be overwritten, or what its scene was made from. Once the monitor says stop,
-/// throws Cancelled, and nothing is written.
+/// Throws Error{bad_scene} if the format cannot hold the packing, Error{cannot_write} if a file of the
+/// packing's own result or a source of its scene would be overwritten. Throws Cancelled once the monitor says
+/// stop; nothing is written then.
 ///
-/// Cost: about 0.2 µs a sphere; the certificate, where it is asked, up to 0.8 µs. Of an image that of
-/// `voxelise`, which reports its progress.
+/// Cost: about 0.2 µs a sphere, up to 0.8 µs more for a certificate; for an image that of `voxelise`, which
+/// reports its progress.
 WrittenExport write_export(const Packing&, const Output&, const std::filesystem::path& file,
                            const Monitor& monitor = {});
 

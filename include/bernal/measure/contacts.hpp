@@ -11,48 +11,47 @@
 
 namespace bernal {
 
-/// What touches what. A *contact* is a pair (or a sphere and a wall) whose gap is below `contact_gap`:
-/// gap ratio = (d - ri - rj) / (ri + rj) for a pair, (clearance - r) / r for a wall. Where the domain repeats
-/// itself every image of a pair that touches is a contact, and a sphere may touch its own image.
+/// Contacts of spheres with each other and with walls. A *contact* is a pair (or a sphere and a wall) with a
+/// gap ratio below `contact_gap`: (d - ri - rj) / (ri + rj) for a pair, (clearance - r) / r for a wall. In a
+/// periodic domain each touching image of a pair is a contact, and a sphere can touch its own image.
 ///
-/// *Rattlers* are spheres that fewer than D + 1 contacts hold, taken out one after the other until every one
-/// that is left is held; a sphere is not held by its own image. What is left is the *backbone*.
+/// *Rattlers* are spheres with fewer than D + 1 contacts, removed one by one until every remaining sphere has
+/// that many; contacts with a sphere's own image do not count. The remaining spheres are the *backbone*.
 struct Contacts {
   double contact_gap = 0.002;
   std::uint64_t pairs = 0;  ///< sphere-sphere contacts
-  std::uint64_t walls = 0;  ///< sphere-wall contacts, one a facet, edge or corner
+  std::uint64_t walls = 0;  ///< sphere-wall contacts, one per facet, edge or corner
   std::uint64_t rattlers = 0;
-  double coordination = 0;  ///< mean number of sphere contacts of a sphere: 2 pairs / N
+  double coordination = 0;  ///< mean number of sphere-sphere contacts per sphere: 2 pairs / N
 
-  std::uint64_t backbone = 0;        ///< spheres that are no rattlers
+  std::uint64_t backbone = 0;        ///< spheres that are not rattlers
   std::uint64_t backbone_pairs = 0;  ///< contacts among them
   std::uint64_t backbone_walls = 0;
   double backbone_coordination = 0;  ///< 2 backbone_pairs / backbone
-  /// Contacts that just hold the backbone of frictionless spheres that are pressed together, those with walls
-  /// among them: as many as there are displacements, D backbone, less those of all spheres together that no
-  /// wall feels (`symmetries_of` the domain: D in a periodic box, 1 in a cylinder, 3 in a sphere), and one
-  /// for the size of the box, or of the spheres, at which they jam. In a bed that is held by its weight
-  /// instead there is one less, and such a bed has hardly any backbone by the count of D + 1. Absent where
-  /// there is no backbone.
+  /// The isostatic number: the contacts, walls included, that just hold a backbone of frictionless spheres
+  /// under pressure. It is the number of degrees of freedom, D backbone, minus the rigid motions that no wall
+  /// prevents (`symmetries_of` the domain: D in a periodic box, 1 in a cylinder, 3 in a sphere), plus one for
+  /// the box or sphere size at which they jam. A bed held by its weight needs one less; by the D + 1 rule it
+  /// has hardly any backbone. Absent without a backbone.
   std::optional<std::uint64_t> isostatic;
-  /// Those that the backbone has.
+  /// Contacts of the backbone, to compare with `isostatic`.
   std::uint64_t backbone_contacts() const { return backbone_pairs + backbone_walls; }
 };
 
-/// Cost O(N): about 1 µs a sphere in a periodic box of three dimensions. Any dimension, any size ratio, and
-/// periods as short as one sphere; along axes with a period centres may lie anywhere. Precondition: spheres
-/// of the domain's dimension. Throws Error{bad_argument} for a gap ratio beyond ±1, or that is no number.
+/// Cost: O(N), about 1 µs a sphere in a periodic box of three dimensions. Any dimension, any size ratio,
+/// periods as short as one sphere; along periodic axes centres may lie anywhere. Precondition: spheres of the
+/// domain's dimension. Throws Error{bad_argument} if the gap ratio is beyond ±1 or not a number.
 Contacts measure_contacts(const Spheres<dynamic>&, const Domain&, double contact_gap = 0.002);
 
-/// The same for every one of the gaps, in their order, at the cost of the largest. `made`: see
+/// The same for several gap ratios, in their order, at the cost of the largest. `made`: see
 /// `local_container`.
 std::vector<Contacts> measure_contacts(const Spheres<dynamic>&, const Domain&,
                                        std::span<const double> contact_gaps,
                                        const std::shared_ptr<const Container>& made = {});
 
-/// The same of spheres that keep a gap from each other and one from the walls, in the domain's unit: what
-/// holds them in their places are others, and walls, at that distance. So contacts are those of spheres with
-/// half the gap around them, between walls that they then touch, and their gap ratios too.
+/// The same for spheres that keep a gap from each other and `wall_gap` from the walls, in the domain's unit.
+/// A contact is then a pair at that distance: gap ratios are those of spheres enlarged by half the gap,
+/// between walls shifted to match.
 std::vector<Contacts> measure_contacts_across(double gap, double wall_gap, const Spheres<dynamic>&,
                                               const Domain&, std::span<const double> contact_gaps,
                                               const std::shared_ptr<const Container>& made = {});

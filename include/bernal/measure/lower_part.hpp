@@ -6,7 +6,7 @@
 
 namespace bernal {
 
-/// What of a domain is no higher than a level: the points p with -direction·p <= height.
+/// The part of a domain up to a level: the points p with -direction·p <= height.
 struct LowerPart {
   Vector<3> direction;  ///< of gravity, a unit vector
   double height;
@@ -18,7 +18,7 @@ struct LowerPart {
     return {direction, (height - height_of(frame.origin)) / frame.scale};
   }
 
-  /// Bounds of the part of what has those bounds: cut where the level lies across an axis.
+  /// Bounds of the lower part of something with these bounds; cut only if gravity is along an axis.
   Bounds<3> cut(Bounds<3> bounds) const {
     for (int k = 0; k < 3; ++k) {
       if (std::abs(direction[k]) < 1) continue;

@@ -14,42 +14,39 @@
 
 namespace bernal {
 
-/// The certificate as one JSON object, two spaces a level: what `verify --json` prints and what stands under
-/// `certificate` in report.json. Its keys are the members of Certificate. `worst_pair` is null where no two
-/// spheres are near, twice the same index for a sphere and its own image; `worst_wall` and `min_wall_gap` are
-/// null where no sphere is near a wall. `overlaps` and `protrusions` are there where a list was asked for and
-/// has entries. Numbers that are not finite become null.
-/// With `settled`, where whether the spheres rest was asked for; its `list`, of spheres with centre and
-/// radius, is there where it has entries.
+/// The certificate as a JSON object, indented by two spaces a level: what `verify --json` prints, and
+/// `certificate` in report.json. Its keys are the members of Certificate. `worst_pair` is null if no two
+/// spheres are near, and holds one index twice for a sphere and its own image; `worst_wall` and
+/// `min_wall_gap` are null if no sphere is near a wall. `overlaps` and `protrusions` are present if a list
+/// was requested and has entries. Numbers that are not finite become null. `settled` is present if a `Rest`
+/// is given; its `list`, of spheres with centre and radius, if it has entries.
 std::string certificate_as_json(const Certificate&, const std::optional<Rest>& = {},
                                 const Spheres<dynamic>& = Spheres<dynamic>(3));
 
-/// Measurements as one JSON object: what `bernal measure --json` prints. Lengths are in the scene's unit,
-/// radii are radii. What there is not is null: `g_r` where there are walls, `chambers` and `walls` where
-/// there are none, p-values that would mean nothing.
+/// Measurements as a JSON object: what `bernal measure --json` prints. Lengths are in the scene's unit; sizes
+/// are radii. Absent measurements are null, as are p-values without meaning.
 std::string measurements_as_json(const Packing&, const Measurements&);
 
-/// A plan as one JSON object: what `bernal explain --json` prints. `stages` is TOML.
+/// A plan as a JSON object: what `bernal explain --json` prints. `stages` is TOML.
 std::string plan_as_json(const Plan&);
 
-/// What a CAD file is as one JSON object: what `bernal inspect --json` prints. `unit` is what its lengths are
-/// taken for, "" where nobody said; `chambers` those for a radius, where one was given; `container_lines`
-/// are `lines_that_help`. What is not known is null.
+/// A CAD file as a JSON object: what `bernal inspect --json` prints. `unit` is the unit assumed for its
+/// lengths, "" if unknown; `chambers` are those for a given radius; `container_lines` are `lines_that_help`.
+/// Unknown values are null.
 std::string inspection_as_json(const std::filesystem::path& file, std::string_view unit, const MeshReport&,
                                const std::optional<Chambers>& chambers,
                                const std::vector<std::string>& container_lines);
 
-/// Everything that a scene may say, see `scene_reference`, as one JSON object {"groups": [{name, selector,
-/// title, tables: [{name, help, keys, choices}]}]}: what `bernal keys --json` prints. A key has name, help,
-/// type, expectation, `default` as JSON or null, `min` and `max` (null where there is no limit), `above_min`,
-/// `below_max`, words, required, `is_diameter` and `acts`.
+/// All keys of a scene, see `scene_reference`, as a JSON object {"groups": [{name, selector, title, tables:
+/// [{name, help, keys, choices}]}]}: what `bernal keys --json` prints. A key has name, help, type,
+/// expectation, `default` as JSON or null, `min` and `max` (null if unlimited), `above_min`, `below_max`,
+/// words, required, `is_diameter` and `acts`.
 std::string scene_reference_as_json();
 
-/// The same as a JSON Schema (2020-12) of a scene, read as TOML: types, ranges, words, what must be given and
-/// what excludes each other, with help and defaults; keys that it does not name are refused. What `bernal
-/// keys
-/// --schema` prints and data/schemas/scene.schema.json holds. What depends on two values at a time (min below
-/// max, as many shares as sizes, which stage works where) it does not say; `read_scene` and `build` do.
+/// The same as a JSON Schema (2020-12) of a scene read as TOML: types, ranges, words, required and mutually
+/// exclusive keys, help and defaults; unknown keys are refused. What `bernal keys --schema` prints and
+/// data/schemas/scene.schema.json holds. Conditions on two values at once (min below max, as many shares as
+/// sizes, which stage works where) are not in it; `read_scene` and `build` check them.
 std::string scene_schema_as_json();
 
 }  // namespace bernal

@@ -11,8 +11,8 @@
 
 namespace bernal {
 
-/// A plane through a packing of three dimensions: the points p with normal · p = offset. It is looked at with
-/// `right` and `up`, unit vectors in it: +z points up unless the plane lies across it.
+/// A plane through a packing of three dimensions: the points p with normal · p = offset. `right` and `up` are
+/// unit vectors in the plane that orient the picture; +z points up unless it is normal to the plane.
 struct SectionPlane {
   Vector<3> normal = Vector<3>::UnitY();  ///< of unit length
   double offset = 0;
@@ -21,41 +21,42 @@ struct SectionPlane {
   std::string text = {};  ///< "y = 1.5"
 };
 
-/// The plane of "y = 1.5" or "0.6 x + 0.8 z = 2". Throws Error{bad_argument} for anything else.
+/// The plane of an equation such as "y = 1.5" or "0.6 x + 0.8 z = 2". Throws Error{bad_argument} for anything
+/// else.
 SectionPlane section_plane(std::string_view text);
 
-/// The plane through the middle of the domain's bounds: y = const, where what settles along z is seen from
-/// the side, z = const where a domain has no walls, x = const where only those across y are walls. Where
-/// a mesh has no surface there, as between two parts, the plane through the middle of its widest facet.
-/// Precondition: three dimensions.
+/// The plane through the middle of the domain's bounds: y = const, which shows settling along z from the
+/// side; z = const for a domain without walls; x = const if only the y axis has walls. If a mesh has no
+/// surface there, as between two parts, the plane goes through the middle of its widest facet. Precondition:
+/// three dimensions.
 SectionPlane middle_plane(const Domain&);
 
-/// What a plane cuts of spheres and their domain.
+/// The cut of a plane through spheres and their domain.
 struct Section {
   struct Circle {
     Vector<2> center;  ///< along `right` and `up`, in the scene's unit
-    double radius;     ///< sqrt(r² - h²) of a sphere of radius r whose centre is h from the plane
+    double radius;     ///< sqrt(r² - h²) for a sphere of radius r with its centre h from the plane
     std::size_t sphere;
-    bool sticks_out = false;  ///< of one period
+    bool sticks_out = false;  ///< protrudes from the period
   };
   SectionPlane plane;
-  std::vector<Circle> circles;  ///< in the order of the spheres; images that reach into the domain are others
-  /// Of the domain or of one period of it: closed lines whose inside is the domain's by the even-odd rule.
-  /// That of a box or mesh is exact to rounding; a round one has its points on the curve, which it leaves by
-  /// at most 1e-5 of its radius.
+  /// In the order of the spheres; each image that reaches into the domain has its own.
+  std::vector<Circle> circles;
+  /// Boundary of the domain, or of one period: closed lines with the inside by the even-odd rule. Exact to
+  /// rounding for a box or mesh; a round outline has its points on the curve, from which it departs by at
+  /// most 1e-5 of the radius.
   std::vector<std::vector<Vector<2>>> outline;
-  double area = 0;          ///< that the outline encloses
-  double covered_area = 0;  ///< of it, by circles; what two of them cover counts twice
+  double area = 0;          ///< inside the outline
+  double covered_area = 0;  ///< of that, inside circles; the overlap of two circles counts twice
   double area_fraction() const { return covered_area / area; }
 };
 
-/// Precondition: three dimensions. A plane in a face cuts that face. Throws Error{bad_argument} where the
-/// plane does not meet the domain. Cost: O(N + T) for T triangles, in oblique planes of periodic domains
-/// more.
+/// Precondition: three dimensions. A plane in a face cuts that face. Throws Error{bad_argument} if the plane
+/// does not meet the domain. Cost: O(N + T) for T triangles; more for oblique planes of periodic domains.
 Section section_of(const Spheres<dynamic>&, const Domain&, const SectionPlane&);
 
-/// A picture of the section: exact circles, coloured by the radii of the spheres as `packing.svg` is, the
-/// outline, the plane and its area fraction.
+/// A picture of the section: exact circles in the colours of `packing.svg`, the outline, the plane and its
+/// area fraction.
 std::string section_svg(const Section&, const Spheres<dynamic>&, std::string_view unit);
 
 }  // namespace bernal

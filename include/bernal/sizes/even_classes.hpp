@@ -8,17 +8,17 @@
 
 namespace bernal {
 
-/// The sizes of a distribution that has only classes, in an order in which each comes as often as its share
-/// says: among the first n draws share·n times, off by at most 1 - c, c = 1 / (2k - 2) for k classes, for
-/// every n. So of n shares that are whole each is exactly met.
+/// Deals the sizes of a discrete distribution as evenly as possible: among the first n draws a class comes
+/// share·n times, off by at most 1 - c, c = 1 / (2k - 2) for k classes, for every n. So if all share·n are
+/// whole, each is met exactly.
 ///
-/// The j-th draw of a class may be the ⌈(j - 1 + c) / share⌉-th of all or a later one, and is at last the
-/// (⌊(j - c) / share⌋ + 1)-th; of those that may come the one that is due first comes, by lot where several
-/// are. Source: R. Tijdeman, The chairman assignment problem, Discrete Mathematics 32 (1980) 323, which
-/// proves that nothing is ever overdue. Cost: O(log k) a draw.
+/// The j-th draw of a class is at the earliest the ⌈(j - 1 + c) / share⌉-th of all, and at the latest the
+/// (⌊(j - c) / share⌋ + 1)-th; among the eligible classes the one with the earliest deadline comes first,
+/// ties by lot. Source: R. Tijdeman, The chairman assignment problem, Discrete Mathematics 32 (1980) 323,
+/// which proves that all deadlines are met. Cost: O(log k) a draw.
 class EvenClasses {
  public:
-  /// Of a distribution with other sizes, or with one alone, there are none.
+  /// Empty if the distribution is not discrete or has a single size.
   explicit EvenClasses(const SizeDistribution& sizes);
 
   bool empty() const { return classes_.empty(); }
@@ -31,7 +31,7 @@ class EvenClasses {
     std::uint64_t drawn = 0;
   };
   struct Turn {
-    std::uint64_t key, lot;  ///< from when on it may come; once it may, by when it has to
+    std::uint64_t key, lot;  ///< while waiting, the draw at which it becomes eligible; then its deadline
     std::size_t of;
     bool operator>(const Turn& other) const { return key != other.key ? key > other.key : lot > other.lot; }
   };

@@ -9,20 +9,20 @@
 
 namespace bernal {
 
-/// How the radii of a packing are taken from their distribution.
+/// How the radii of a packing are drawn from their distribution.
 enum class Draw {
-  random,     ///< each for itself
-  quantiles,  ///< evenly spread over the distribution, however many there are
+  random,     ///< independently
+  quantiles,  ///< evenly spread over the distribution, for any number of draws
 };
 
-/// The radii of a packing, one after the other, without end: a function of distribution, seed and `Draw`.
+/// The endless sequence of a packing's radii: a function of distribution, seed and `Draw`.
 ///
-/// `quantiles` takes the k-th radius at u_k = frac(u_0 + k/φ), φ the golden ratio and u_0 the seed's: the
-/// first N of them are as even as N points can be, for every N. Of size classes each comes in every N within
-/// one of its share, see `EvenClasses`. So the share of spheres up to any radius, and
-/// the mean of r³ where r is bounded, are those of the distribution up to O(log N / N); random draws leave
-/// O(1/√N). Their order is not random: neighbours in the sequence differ. The distribution must outlive the
-/// sequence, and so must radii that come `first`, before any is drawn.
+/// `quantiles` takes the k-th radius at u_k = frac(u_0 + k/φ), with φ the golden ratio and u_0 from the seed:
+/// the first N are as even as N points can be, for every N. Classes come within one of their share for every
+/// N, see `EvenClasses`. So the share of spheres up to any radius, and the mean of r³ for bounded r, match
+/// the distribution up to O(log N / N); random draws leave O(1/√N). The order is not random: neighbours in
+/// the sequence differ. The distribution must outlive the sequence, and so must `first`, radii that come
+/// before any is drawn.
 class RadiusSequence {
  public:
   RadiusSequence(const SizeDistribution& sizes, std::uint64_t seed, Draw draw,
@@ -41,7 +41,7 @@ class RadiusSequence {
   Random random_;
   bool even_;
   std::uint64_t next_ = 0;              ///< u_k in units of 2^-64
-  std::optional<EvenClasses> classes_;  ///< of `quantiles`
+  std::optional<EvenClasses> classes_;  ///< only for `quantiles`
 };
 
 }  // namespace bernal

@@ -7,9 +7,9 @@
 
 namespace bernal {
 
-/// The number distribution of sphere radii: what fraction of the *number* of spheres has which radius.
-/// Distributions that users state by volume are converted once, when they are made. Immutable; all members
-/// may be called from several threads.
+/// The number distribution of sphere radii: the share of the *number* of spheres below each radius.
+/// Distributions by volume are converted once, on construction. Immutable; all members may be called from
+/// several threads.
 class SizeDistribution {
  public:
   virtual ~SizeDistribution() = default;
@@ -20,22 +20,21 @@ class SizeDistribution {
   virtual double cumulative(double radius) const = 0;
   /// Mean of radius^k, any integer k.
   virtual double moment(int k) const { return moment_above(k, 0); }
-  /// What radii above `radius` >= 0 contribute to moment(k): the integral of r^k over them. Precise in the
-  /// upper tail, where 1 - cumulative is not.
+  /// The contribution of radii above `radius` >= 0 to moment(k): the integral of r^k over them. Precise in
+  /// the upper tail, where 1 - cumulative is not.
   virtual double moment_above(int k, double radius) const = 0;
   double min() const { return min_; }
-  /// Infinity where the distribution has an unbounded tail.
+  /// Infinity for an unbounded tail.
   double max() const { return max_; }
-  /// The radii that a share of the number has exactly, ascending: the size classes. `cumulative` jumps there.
+  /// The radii with a positive share each, ascending: the size classes, where `cumulative` jumps.
   virtual std::vector<double> atoms() const { return {}; }
 
-  /// The radius that stands for `u` in (0, 1): where u is uniform, the radius follows this distribution, and
-  /// the radii up to any limit come from a few intervals of u. quantile(u), except where something quicker
-  /// does.
+  /// A radius for `u` in (0, 1): for uniform u the radius follows this distribution, and the radii up to any
+  /// limit come from a few intervals of u. The quantile, unless something faster has this property.
   virtual double radius_at(double u) const { return quantile(u); }
 
-  /// One radius, always positive and finite: the k-th draw is a function of the k-th number. An unbounded
-  /// lower tail is cut at its quantile 2^-54, below the smallest number that can be drawn but 0.
+  /// One radius, always positive and finite: the k-th draw is a function of the k-th random number. An
+  /// unbounded lower tail is cut at its quantile 2^-54, below the smallest number that can be drawn except 0.
   double sample(Random& random) const { return radius_at(std::max(random.uniform(), 0x1p-54)); }
 
  protected:
@@ -46,43 +45,42 @@ class SizeDistribution {
   double min_, max_;
 };
 
-/// What the shares or the density of a distribution count: every sphere alike, or its volume, r³ in any
-/// dimension, as a balance does where all have one density. A law q(r) by volume is the law q(r) / r³ by
-/// number.
+/// What the shares or the density of a distribution count: spheres, or their volume, r³ in any dimension, as
+/// a balance does for one density. A density q(r) by volume is q(r) / r³ by number.
 enum class Basis { number, volume };
 
-/// All of these throw Error{bad_argument} on absurd values (not finite, not positive, empty, min > max).
+/// All of these throw Error{bad_argument} for invalid values (not finite, not positive, empty, min > max).
 std::unique_ptr<SizeDistribution> make_constant(double radius);
 /// `shares` are positive, in any scale, one for each of `radii`, which are distinct and in any order.
 std::unique_ptr<SizeDistribution> make_classes(std::vector<double> radii, std::vector<double> shares, Basis);
-/// The density of the stated basis is constant on [min, max]; a constant distribution where they are equal.
+/// The density of the given basis is constant on [min, max]; a constant distribution if they are equal.
 std::unique_ptr<SizeDistribution> make_uniform(double min, double max, Basis);
-/// ln r is normal with standard deviation `sigma` about ln `median`, both of the stated basis; truncated to
+/// ln r is normal with standard deviation `sigma` about ln `median`, both of the given basis; truncated to
 /// [min, max] (0 and infinity for none).
 std::unique_ptr<SizeDistribution> make_lognormal(double median, double sigma, Basis, double min, double max);
-/// The lognormal distribution whose volume-weighted mean <r⁴>/<r³> is `r43` and whose surface-weighted mean
-/// <r³>/<r²> is `r32`, before it is truncated: sigma² = ln(r43 / r32), median by volume √(r43·r32).
+/// The lognormal distribution with volume-weighted mean <r⁴>/<r³> = `r43` and surface-weighted mean <r³>/<r²>
+/// = `r32` before truncation: sigma² = ln(r43 / r32), median by volume √(r43·r32).
 std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32, double min, double max);
-/// r is normal with that mean and standard deviation, both of the stated basis and before the cut to
-/// [min, max]. 0 and infinity cut six standard deviations from the mean, where nothing is; the lower cut must
-/// be above zero.
+/// r is normal with this mean and standard deviation, both of the given basis and before truncation to [min,
+/// max]. 0 and infinity stand for six standard deviations from the mean, beyond which the share is
+/// negligible; the lower limit must be positive.
 std::unique_ptr<SizeDistribution> make_normal(double mean, double deviation, Basis, double min, double max);
-/// The density of the stated basis, in any scale, is the natural cubic spline through the points, and zero
-/// where that is negative. `radii` ascend, densities are not negative, at least two points. Source: Zhao, Li
-/// & Liu (2007), section 1; they draw by rejection, here one number gives one radius.
+/// The density of the given basis, in any scale, is the natural cubic spline through the points, and zero
+/// where the spline is negative. `radii` ascend, densities are not negative, at least two points. Source:
+/// Zhao, Li & Liu (2007), section 1, who draw by rejection; here one number gives one radius.
 std::unique_ptr<SizeDistribution> make_table(std::vector<double> radii, std::vector<double> densities, Basis);
 /// A sieve analysis: `passing`, in any scale, is the volume (or mass) of the spheres that pass each opening.
 /// It begins at 0 and does not fall; `radii` are half the openings, ascending. Between two sieves the volume
-/// is spread evenly over ln r, so that curves drawn over a logarithmic axis are straight there.
+/// is uniform in ln r, so that curves are straight over a logarithmic axis.
 std::unique_ptr<SizeDistribution> make_sieve(std::vector<double> radii, std::vector<double> passing);
-/// Rosin and Rammler (Weibull): of the volume, the share 1 - exp(-(r / r63)^n) lies below r; then cut to
-/// [min, max], the rest counting as the whole. By number the fines without a lower cut would be infinitely
-/// many for n <= 3, so `min` is positive; infinity cuts where 0.1 % of the volume lies above.
+/// Rosin and Rammler (Weibull): the share 1 - exp(-(r / r63)^n) of the volume lies below r; truncated to
+/// [min, max] and normalised. `min` is positive, because for n <= 3 the number of fines has no bound without
+/// it; an infinite `max` stands for the radius with 0.1 % of the volume above.
 std::unique_ptr<SizeDistribution> make_rosin_rammler(double r63, double n, double min, double max);
-/// Fuller, with the lower limit of Funk and Dinger: of the volume, the share
-/// (r^exponent - min^exponent) / (max^exponent - min^exponent) lies below r.
+/// Fuller, with the lower limit of Funk and Dinger: the share (r^exponent - min^exponent) / (max^exponent -
+/// min^exponent) of the volume lies below r.
 std::unique_ptr<SizeDistribution> make_fuller(double max, double exponent, double min);
-/// Several distributions at once; `shares` are positive, in any scale, of the number or the volume of all.
+/// Several distributions mixed; `shares` are positive, in any scale, of the number or the volume of all.
 std::unique_ptr<SizeDistribution> make_mixture(std::vector<std::unique_ptr<SizeDistribution>> of,
                                                std::vector<double> shares, Basis);
 

@@ -2,14 +2,14 @@
 
 namespace bernal {
 
-/// What becomes of spheres that touch or nearly do before a mesher sees them: between them a mesh would need
-/// elements without thickness.
+/// How spheres that touch or nearly touch are prepared for a mesher, which would otherwise need elements
+/// without thickness between them.
 enum class ContactTreatment {
   none,    ///< they stay as they are
-  gap,     ///< spheres nearer to another or to a wall than the gap shrink, no more than that takes
-  shrink,  ///< all spheres shrink by one factor, until none is nearer than the gap
-  bridge,  ///< cylinders join spheres that are nearer to each other than the gap
-  cap,     ///< caps are cut off where spheres are nearer to each other or to a wall than the gap
+  gap,     ///< spheres closer than the gap to another or to a wall shrink, only as far as needed
+  shrink,  ///< all spheres shrink by one factor, until the gap is kept
+  bridge,  ///< cylinders join spheres that are closer to each other than the gap
+  cap,     ///< caps are cut off where spheres are closer than the gap to each other or to a wall
 };
 
 }  // namespace bernal

@@ -2,12 +2,12 @@
 
 namespace bernal {
 
-/// What of a packing a file of triangles holds.
+/// Which surfaces of a packing a triangle file holds.
 enum class SurfaceChoice {
   spheres,    ///< the spheres, seen from outside; cut and closed at the ends of periods
   container,  ///< the container, or a period's boundary, seen from outside
   all,        ///< both
-  pores,      ///< the boundary of the pore space, seen from the pores' outside: one closed surface
+  pores,      ///< the boundary of the pore space, oriented away from the pores: one closed surface
 };
 
 }  // namespace bernal

@@ -8,7 +8,7 @@
 namespace bernal::cad {
 namespace {
 
-/// The parameters nearest to p, in closed form; false where the surface has none.
+/// The nearest parameters to p, in closed form; false if the surface type has none.
 bool nearest_parameters(const BRepAdaptor_Surface& surface, const gp_Pnt& p, gp_XY& at) {
   double u = 0, v = 0;
   switch (surface.GetType()) {
@@ -34,8 +34,8 @@ bool nearest_parameters(const BRepAdaptor_Surface& surface, const gp_Pnt& p, gp_
   return true;
 }
 
-/// From p to the surface's point nearest to it, in closed form or by Gauss-Newton from parameters nearby. Any
-/// point of the surface bounds the distance, so the nearest of the iterates is taken.
+/// From p to the surface's nearest point, in closed form or by Gauss-Newton from nearby parameters. Any point
+/// of the surface bounds the distance, so the nearest of the iterates is taken.
 Vector<3> offset_of_surface(const BRepAdaptor_Surface& surface, gp_XY at, const Vector<3>& p) {
   constexpr int steps = 6;
   if (nearest_parameters(surface, {p[0], p[1], p[2]}, at))
@@ -63,8 +63,8 @@ Vector<3> offset_of_surface(const BRepAdaptor_Surface& surface, gp_XY at, const 
 
 using Corners = FaceTriangles::Corners;
 
-/// Calls visit(a, b, c, offset) at fifteen points of a triangle: their weights of its corners, and from there
-/// to the surface.
+/// Calls visit(a, b, c, offset) at fifteen points of a triangle: their barycentric weights and the offset to
+/// the surface.
 template <typename Visit>
 void for_each_offset(const BRepAdaptor_Surface& surface, const FaceTriangles& face, const Corners& corners,
                      const Visit& visit) {
@@ -115,7 +115,7 @@ class Refinement {
     (sides[0] == none ? sides[0] : sides[1]) = triangle;
   }
 
-  /// How far the surface lies from the triangle, less what its corners are off themselves.
+  /// Distance of the surface from the triangle, minus that of its corners.
   double beyond_corners(const Corners& corners) const {
     std::array<double, 3> off{};
     for (int k = 0; k < 3; ++k)
@@ -127,7 +127,7 @@ class Refinement {
     return most;
   }
 
-  /// That whose middle the surface is farthest from, or the longest, if none stands off; -1 if none is left.
+  /// The edge whose middle is farthest from the surface, or the longest if none is off; -1 if none is left.
   int edge_to_split(const Corners& corners) const {
     int farthest = -1, longest = -1;
     double off = 0.25 * deflection_, length = deflection_;
@@ -155,7 +155,7 @@ class Refinement {
     for (const std::uint32_t t : sides) {
       Corners& old = face_.triangles[t];
       const auto first = std::ranges::find_if(old, [&](std::uint32_t c) { return c != a && c != b; });
-      std::ranges::rotate(old, first);  // the corner that is on neither end in front
+      std::ranges::rotate(old, first);  // the corner that is at neither end first
       const auto [apex, from, to] = old;
       const auto added = static_cast<std::uint32_t>(face_.triangles.size());
       old = {apex, from, middle};

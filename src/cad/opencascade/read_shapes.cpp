@@ -22,11 +22,11 @@
 #include <algorithm>
 #include <fstream>
 
-#include "cad/counted.hpp"
-#include "cad/known_formats.hpp"
+#include "cad/diagnose/counted.hpp"
 #include "cad/opencascade/read_shapes.hpp"
 #include "cad/opencascade/sewing.hpp"
 #include "cad/opencascade/tessellate.hpp"
+#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 
 namespace bernal::cad {
@@ -34,19 +34,19 @@ namespace bernal::cad {
 namespace {
 
 constexpr double default_deflection = 1e-3;   // of the diagonal
-constexpr double smallest_deflection = 1e-5;  // of the diagonal: the mesher takes minutes then
+constexpr double smallest_deflection = 1e-5;  // of the diagonal; the mesher takes minutes at this
 
 struct NamedShape {
   TopoDS_Shape shape;
   std::string name;
 };
 
-/// What a file holds: solids, and the faces that belong to none.
+/// The solids of a file, and the faces outside solids.
 struct Parts {
   std::vector<NamedShape> solids;
   std::vector<TopoDS_Shape> faces;
   FileFacts facts;
-  std::vector<std::string> missing = {};  ///< files that it names, which are not there
+  std::vector<std::string> missing = {};  ///< named files that do not exist
 };
 
 std::string name_of(const TDF_Label& label) {
@@ -66,7 +66,7 @@ void split(const TopoDS_Shape& shape, const std::string& name, Parts& parts) {
     parts.faces.push_back(face.Current());
 }
 
-/// A part as it is placed by the assemblies above it, under the name of its product.
+/// A part placed by its assemblies, with the name of its product.
 void collect(const TDF_Label& label, const TopLoc_Location& placement, Parts& parts) {
   TDF_Label product = label;
   TopLoc_Location location = placement;
@@ -112,10 +112,10 @@ const std::vector<KnownUnit>& known_units() {
   return all;
 }
 
-/// "The file is in inch": what is converted to millimetres on the way.
+/// Notes the file's unit: OpenCASCADE converts it to millimetres.
 void note_units(const std::vector<std::string>& names, FileFacts& facts) {
   facts.unit = FileFacts::Length{1e-3, "millimetre"};
-  std::vector<std::string> said;
+  std::vector<std::string> phrases;
   for (std::string name : names) {
     name = in_lower_case(name);
     for (const KnownUnit& known : known_units())
@@ -123,21 +123,23 @@ void note_units(const std::vector<std::string>& names, FileFacts& facts) {
         name = known.length.name;
         facts.written_in = known.length;
       }
-    if (!name.empty() && std::find(said.begin(), said.end(), name) == said.end()) said.push_back(name);
+    if (!name.empty() && std::find(phrases.begin(), phrases.end(), name) == phrases.end())
+      phrases.push_back(name);
   }
-  if (said.size() != 1) facts.written_in.reset();
-  if (said.empty()) {
+  if (phrases.size() != 1) facts.written_in.reset();
+  if (phrases.empty()) {
     facts.unit.reset();
     facts.notes.push_back("the file names no unit of length; OpenCASCADE takes millimetre");
-  } else if (said.size() > 1 || said.front() != "millimetre") {
+  } else if (phrases.size() > 1 || phrases.front() != "millimetre") {
     facts.notes.push_back(
-        fmt::format("the file is in {}; OpenCASCADE converts to millimetre", fmt::join(said, " and ")));
+        fmt::format("the file is in {}; OpenCASCADE converts to millimetre", fmt::join(phrases, " and ")));
   } else {
     facts.written_in.reset();
   }
 }
 
-/// Why a file cannot be parsed as STEP, which begins with the name of the standard and ends with END- of it.
+/// Why a file cannot be parsed as STEP, which begins with the name of the standard and ends with END- and
+/// that name.
 std::string unparsed_step(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(in), {});
@@ -165,7 +167,7 @@ std::string read_step(const std::filesystem::path& file, Parts& parts) {
   reader.SetGDTMode(false);
   reader.SetMatMode(false);
   reader.SetViewMode(false);
-  // Other files that it names are looked for beside it only where its path is absolute.
+  // It finds files that this one names only if the path is absolute.
   if (reader.ReadFile(std::filesystem::absolute(file).c_str()) != IFSelect_RetDone)
     return unparsed_step(file);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
@@ -205,7 +207,7 @@ std::string read_brep(const std::filesystem::path& file, Parts& parts) {
   TopoDS_Shape shape;
   if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull())
     return "OpenCASCADE cannot parse it as BREP; export it again, or as STEP";
-  BRepTools::Clean(shape);  // of triangles with another deflection
+  BRepTools::Clean(shape);  // triangles of another deflection
   split(shape, {}, parts);
   return {};
 }
@@ -219,7 +221,7 @@ TopoDS_Compound together(const Parts& parts) {
   return all;
 }
 
-/// The first few of them.
+/// The first few names.
 std::string list_of(const std::vector<std::string>& files) {
   constexpr std::size_t most = 6;
   const auto end = files.begin() + std::ptrdiff_t(std::min(files.size(), most));
@@ -323,7 +325,7 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
     result.failure = fmt::format(
         "a deflection of {:.3g}{} is less than a hundred-thousandth of the part, which is {:.3g}{} across; "
         "choose at least {:.3g}{} (deflection in [container]; a fiftieth of the smallest radius if absent)",
-        deflection, unit, diagonal, unit, not_less(smallest_deflection * diagonal), unit);
+        deflection, unit, diagonal, unit, rounded_up(smallest_deflection * diagonal), unit);
     return result;
   }
   sew_faces(parts, diagonal);
@@ -344,7 +346,7 @@ void bernal_read_shapes(const std::filesystem::path& file, bernal::cad::ShapeFor
   try {
     result = bernal::cad::read(file, format, deflection);
   } catch (const Standard_Failure& failure) {
-    const std::string_view said = failure.GetMessageString();
-    result.failure = fmt::format("OpenCASCADE gives up: {}", said.empty() ? "no reason given" : said);
+    const std::string_view phrases = failure.GetMessageString();
+    result.failure = fmt::format("OpenCASCADE gives up: {}", phrases.empty() ? "no reason given" : phrases);
   }
 }

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "cad/polygon_soup.hpp"
+#include "cad/read/polygon_soup.hpp"
 
 namespace bernal::cad {
 

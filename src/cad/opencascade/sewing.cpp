@@ -14,7 +14,7 @@ namespace {
 
 using Faces = std::span<const TopoDS_Shape>;
 
-/// What marks an edge: its middle, wherever it is written.
+/// An edge is identified by its middle.
 std::vector<gp_Pnt> middles_of_edges(const TopoDS_Shape& face) {
   std::vector<gp_Pnt> middles;
   for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
@@ -26,10 +26,10 @@ std::vector<gp_Pnt> middles_of_edges(const TopoDS_Shape& face) {
   return middles;
 }
 
-/// The faces in their order, cut where each edge since the last cut has been met twice; empty if the last
-/// ones do not close.
+/// The faces in their order, split where every edge since the last split has occurred twice; empty if the
+/// last part does not close.
 std::vector<Faces> parts_in_order(Faces faces, double tolerance) {
-  constexpr std::size_t most_faces = 5000;  // each looks through all open edges
+  constexpr std::size_t most_faces = 5000;  // each searches all open edges
   if (faces.size() > most_faces) return {};
   std::vector<Faces> parts;
   std::vector<gp_Pnt> open;

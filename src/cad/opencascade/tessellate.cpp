@@ -21,15 +21,15 @@
 namespace bernal::cad {
 namespace {
 
-/// Of two neighbouring facets on a surface that curves strongly within the deflection.
+/// Between neighbouring facets on a surface that curves strongly within the deflection.
 constexpr double angular_deflection = 0.5;
 
-/// The mesher bounds the distance of edges from their curves only nearly, and leaves slivers across surfaces
-/// that are ruled and twist, fifty times the deflection off. Faces are refined, edges are not: where more
-/// than the deflection is measured after that, the mesher is asked for less, so often.
+/// The mesher meets the deflection on edges only approximately, and leaves slivers fifty times the deflection
+/// off on twisted ruled surfaces. Faces are refined, edges are not: if more than the deflection remains, the
+/// mesher is run again with a smaller one, up to this often.
 constexpr int attempts = 3;
 
-/// The triangulation of one face, its nodes numbered through all faces of the shape.
+/// The triangulation of one face, with nodes numbered through all faces of the shape.
 struct FacePatch {
   TopoDS_Face face;
   opencascade::handle<Poly_Triangulation> triangulation;
@@ -48,7 +48,7 @@ class Stitcher {
         stitch(TopoDS::Edge(edge.Current()), patch);
   }
 
-  /// The first of all nodes that are this one.
+  /// The first node equal to this one.
   std::uint32_t root(std::uint32_t node) {
     while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
     return node;
@@ -90,7 +90,7 @@ class Stitcher {
   }
 
   std::vector<std::uint32_t> parent_;
-  TopTools_IndexedMapOfShape edges_, vertices_;  // the same whatever their orientation
+  TopTools_IndexedMapOfShape edges_, vertices_;  // identified regardless of their orientation
   std::vector<std::vector<std::uint32_t>> along_edge_;
   std::vector<std::uint32_t> at_vertex_;
 };
@@ -127,7 +127,7 @@ std::vector<FacePatch> patches_of(const TopoDS_Shape& shape, std::size_t& untria
   return patches;
 }
 
-/// The triangles of a patch as they are oriented, refined.
+/// The triangles of a patch with the face's orientation, refined.
 FaceTriangles triangles_of(const FacePatch& patch, const std::vector<Vector<3>>& place, Stitcher& stitcher,
                            const BRepAdaptor_Surface& surface, double deflection) {
   FaceTriangles face;
@@ -174,7 +174,7 @@ Attempt tessellate(const TopoDS_Shape& shape, double deflection) {
     const FaceTriangles face = triangles_of(patch, place, stitcher, surface, deflection);
     const auto shared = static_cast<std::uint32_t>(patch.triangulation->NbNodes());
     std::vector<std::uint32_t> own(face.places.size() - shared,
-                                   unnumbered);  // of the nodes that refining added
+                                   unnumbered);  // for the nodes that refining added
     for (const FaceTriangles::Corners& corners : face.triangles) {
       std::array<std::uint32_t, 3> node = corners;
       for (std::uint32_t& n : node)

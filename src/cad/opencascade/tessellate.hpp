@@ -1,21 +1,21 @@
 #pragma once
-#include "cad/polygon_soup.hpp"
+#include "cad/read/polygon_soup.hpp"
 
 class TopoDS_Shape;
 
 namespace bernal::cad {
 
-/// What became of the faces of a shape.
+/// The result of a tessellation.
 struct Tessellated {
   SurfaceDeviation deviation;
   std::size_t untriangulated = 0;  ///< faces that the mesher left out
   std::size_t without_area = 0;    ///< faces whose triangles all collapse
 };
 
-/// Triangles of a shape of OpenCASCADE, appended to the soup, no farther than `deflection` from its surfaces.
-/// The deviation says whether that was reached: surfaces whose edges are known only to a larger tolerance
-/// allow no less. Faces that share an edge share its points by index, whatever was rounded in the placement
-/// of each: a closed shape gives closed triangles. Triangles run as their faces are oriented.
+/// Appends the triangles of an OpenCASCADE shape to the soup, at most `deflection` from its surfaces. The
+/// deviation states what was reached; edges known only to a larger tolerance limit it. Faces share the points
+/// of their common edges by index, independent of rounding in their placements: a closed shape gives closed
+/// triangles. Triangles have the orientation of their faces.
 Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, PolygonSoup& soup);
 
 }  // namespace bernal::cad

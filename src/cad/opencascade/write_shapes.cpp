@@ -41,7 +41,7 @@ struct Failed {
   std::string what;
 };
 
-/// The one solid of a result; a shape with more or none of them is nothing that was asked for.
+/// The only solid of a result; any other number is an error.
 TopoDS_Shape only_solid(const TopoDS_Shape& shape, const char* what) {
   TopExp_Explorer solid(shape, TopAbs_SOLID);
   if (!solid.More()) throw Failed{fmt::format("OpenCASCADE makes nothing of {}", what)};
@@ -51,8 +51,8 @@ TopoDS_Shape only_solid(const TopoDS_Shape& shape, const char* what) {
   return found;
 }
 
-/// What lies on the kept sides of the planes, of a shape about `center` that reaches less than `reach` from
-/// it: a box where they are perpendicular to axes, a cylinder to be cut off where they are not.
+/// The part on the kept sides of the planes of a shape within `reach` of `center`: by a box for axis-aligned
+/// planes, by subtracting a cylinder for others.
 TopoDS_Shape cut_by(const TopoDS_Shape& shape, const std::vector<BallShape::Plane>& cuts,
                     const Vector<3>& center, double reach, const char* what) {
   if (cuts.empty()) return shape;
@@ -122,7 +122,7 @@ struct ContainerShape {
   }
   TopoDS_Shape operator()(const Mesh& mesh) const {
     if (shapes.faces.empty()) return {};
-    // The module links nothing of bernal's own.
+    // The module links no code of bernal.
     Vector<3> lower = mesh.vertices.front(), upper = lower;
     for (const Vector<3>& v : mesh.vertices) {
       lower = lower.cwiseMin(v);
@@ -153,7 +153,7 @@ struct ContainerShape {
   TopoDS_Shape operator()(const Polygon&) const { return {}; }
 };
 
-/// To about a thousandth of a millionth: with few points on every face the sum is off by much more.
+/// Accurate to about 1e-9; with few points a face the sum is far less accurate.
 double volume_of_shape(const TopoDS_Shape& shape) {
   GProp_GProps properties;
   BRepGProp::VolumeProperties(shape, properties, 1e-10);
@@ -190,7 +190,7 @@ bool write_step(const std::vector<Group>& groups, const std::filesystem::path& f
   }
   STEPCAFControl_Writer writer;
   Interface_Static::SetCVal("write.step.unit", "MM");
-  Interface_Static::SetIVal("write.surfacecurve.mode", 0);  // curves in the parameters of surfaces follow
+  Interface_Static::SetIVal("write.surfacecurve.mode", 0);  // parameter curves of surfaces are derived
   return writer.Transfer(document, STEPControl_AsIs) && writer.Write(file.c_str()) == IFSelect_RetDone;
 }
 
@@ -234,7 +234,7 @@ void bernal_write_shapes(const bernal::cad::SolidShapes& shapes, bernal::cad::So
   } catch (const bernal::cad::Failed& failed) {
     result.failure = failed.what;
   } catch (const Standard_Failure& failure) {
-    const std::string_view said = failure.GetMessageString();
-    result.failure = fmt::format("OpenCASCADE gives up: {}", said.empty() ? "no reason given" : said);
+    const std::string_view phrases = failure.GetMessageString();
+    result.failure = fmt::format("OpenCASCADE gives up: {}", phrases.empty() ? "no reason given" : phrases);
   }
 }
