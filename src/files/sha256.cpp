@@ -7,6 +7,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 #include "bernal/core/error.hpp"
 #include "files/input_file.hpp"
