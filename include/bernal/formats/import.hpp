@@ -71,8 +71,9 @@ ImportedPacking import_spheres(Spheres<dynamic> spheres, const ImportOptions& op
                                const Monitor& monitor = {});
 
 /// Writes an imported packing like `write_packing`; its scene names the written spheres as its start, so that
-/// `bernal pack` continues from them. `file` is the source, empty for spheres that came from none. Throws as
-/// that does, if `file` would be overwritten, and Cancelled, with nothing written, once the monitor says stop.
+/// `bernal pack` continues from them. `file` is the source, empty for spheres that came from no file. Throws
+/// as that does, if `file` would be overwritten, and Cancelled, with nothing written, once the monitor says
+/// stop.
 WrittenPacking write_imported(Packing packing, const std::filesystem::path& file,
                               const std::filesystem::path& folder, WriteOptions options = {});
 /// Throws what `write_imported` would throw for the folder; call it before reading a large file.
