@@ -60,21 +60,21 @@ Explanation explanation() {
                      {"3", "ended without reaching what the scene asks"}}};
 }
 
-/// In one line, whatever the input had in it.
+/// Prints a message as one line, whatever characters the input had.
 int complain(std::string_view what) {
   say(stderr, "bernal: {}\n", bernal::plain_text(what, 1000));
   return exit_code::bad_input;
 }
 
-/// A stream that the caller has closed becomes one that goes nowhere, or the next file that is opened would
-/// get what is meant for the stream.
+/// Opens /dev/null for each standard stream that the caller has closed. Otherwise the next file that is
+/// opened would get the stream's number, and what is printed.
 void open_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) [[maybe_unused]]
       const int lowest_free = open("/dev/null", O_RDWR);
 }
 
-/// Of standard output, into a pipe, with as much as was wanted: `| head -1`.
+/// Whether standard output is a pipe whose reader has read enough and ended, as in `| head -1`.
 bool reader_has_left() {
   pollfd output{STDOUT_FILENO, POLLOUT, 0};
   return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return complain(error.what());
   }
-  // What CLI11 prints it has flushed itself, and told nobody.
+  // CLI11 flushes what it prints and does not report an error.
   if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && !reader_has_left())
     return complain("standard output cannot be written");
   return status;

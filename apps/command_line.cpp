@@ -30,7 +30,7 @@ std::string whole_name(const CLI::App& app) {
   return app.get_parent() ? whole_name(*app.get_parent()) + " " + app.get_name() : app.get_name();
 }
 
-/// The word after it is no command, if there is one where a command should stand: which is meant?
+/// What to say of a word that stands where a command should stand and is none: which command is meant.
 std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
   std::vector<std::string_view> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -40,7 +40,7 @@ std::string unknown_command(const CLI::App& app, const std::vector<std::string>&
   return fmt::format("unknown command \"{}\"{}", *after, bernal::remedy(*after, names));
 }
 
-/// "nan" lies in every range that CLI11 knows, and what is computed with numbers beyond these ends in none.
+/// Refuses numbers that are not finite or too large to compute with: for CLI11 "nan" lies in every range.
 std::string complaint_of_number(const std::string& word) {
   constexpr double largest = 1e100;
   char* end = nullptr;
@@ -92,7 +92,7 @@ Option demanding(Option option, const CLI::Validator& check) {
 
 constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;  ///< that a scene can hold
 
-/// CLI11 would take a number that is too large for the largest one.
+/// The seed in a text; none if a scene cannot hold it. CLI11 would read a larger number as the largest.
 std::optional<std::uint64_t> parse_seed(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);

@@ -19,11 +19,11 @@ struct Files {
   std::vector<std::string> endings = {};  ///< {".toml"}, beside folders; none: any file
 };
 
-/// A word of the command line with a value, or a flag, whose variable outlives it; a function is told the
-/// word.
+/// An option of a command: with a value, positional, or a flag. `to` is the variable that takes its value,
+/// and has to outlive it, or a function that is called with the word.
 struct Option {
-  /// "--unit", "-o,--output" or, for what is told from where it stands, "SCENE". A flag with a word,
-  /// "--list{all}": that in braces, unless --list=TEXT says another.
+  /// "--unit", "-o,--output" or, if it is positional, "SCENE". "--list{all}" is a flag with a word: --list
+  /// means --list=all.
   std::string names;
   std::variant<bool*, int*, std::int64_t*, double*, std::string*, std::filesystem::path*,
                std::optional<double>*, std::vector<double>*, std::vector<std::string>*,
@@ -32,7 +32,7 @@ struct Option {
   std::string what;
   std::string type_name = {};  ///< what stands for its value in the help: "DIR"
 
-  // What is asked of it, as the functions below say it; for the help, the pages and the completion.
+  // What the functions below demand of it; for the help, the manual and the completion.
   bool required = false, repeated = false;
   std::vector<std::string> words = {};                 ///< that it takes, or that are offered
   std::optional<Files> files = {};                     ///< that are offered
@@ -43,28 +43,28 @@ struct Option {
 
   bool is_flag() const { return std::holds_alternative<bool*>(to) || names.ends_with('}'); }
   bool is_positional() const { return !names.starts_with('-'); }
-  /// {"-o", "--output"}, without what stands in braces; the one name of what is told from where it stands.
+  /// {"-o", "--output"}, without what stands in braces; the one name of a positional option.
   std::vector<std::string> all_names() const;
   /// What stands for its value: "DIR"; "" of a flag.
   std::string placeholder() const;
 };
 
-// What is asked of an option, and told by the help.
+// Demands on an option, which the help names.
 Option required(Option);
 Option within(Option, int least, int most);
 Option within(Option, double least, double most);
 Option one_of(Option, const std::vector<std::string>& words);
-/// `complaint` is empty where the word is fine.
+/// `complaint` returns "" for a word that is fine.
 Option checked(Option, const std::function<std::string(const std::string& word)>& complaint);
-/// So many values, between commas.
+/// Takes `count` values with commas between them.
 Option list_of(int count, Option);
 /// May be given again, one value each time.
 Option repeated(Option);
-/// Another option, which stands before it.
+/// Refuses it without the other option, which stands before it in the list.
 Option needs(Option, const std::string& other);
 Option excludes(Option, const std::string& other);
 
-// What shells offer for its value; nothing is refused for that.
+// What shells offer for its value; other values are accepted, too.
 Option offering(Option, const std::vector<std::string>& words);
 Option folder(Option);
 Option file(Option, const std::vector<std::string>& endings = {});
@@ -74,8 +74,8 @@ struct Entry {
   std::string name, what;
 };
 
-/// What the help of a command and its page say besides the options. Texts are paragraphs, an empty line
-/// between two, whose lines are broken where they are shown.
+/// What the help of a command and its page in the manual say beside the options. Texts are paragraphs with an
+/// empty line between two; the output breaks their lines.
 struct Explanation {
   struct List {
     std::string title;  ///< "Formats"
@@ -88,7 +88,7 @@ struct Explanation {
   std::vector<Entry> exit_codes = {};  ///< "0", "done"
 };
 
-/// One of the commands of bernal, or of those of its commands that have some.
+/// A command of bernal, or a command of such a command.
 struct Command {
   std::string name, what;
   std::vector<Option> options;
@@ -97,23 +97,22 @@ struct Command {
   std::vector<Command> commands = {};  ///< one of them must be called
 };
 
-/// Reads the words and does what they ask for: --help and --version, or what the command acts. Returns the
-/// exit code. Throws bernal::Error{bad_argument} in one line for words that say nothing, and what the command
-/// throws.
+/// Parses the command line and runs what it asks for: --help, --version or a command. Returns the exit code.
+/// Throws bernal::Error{bad_argument} with one line if it cannot be parsed, and what the command throws.
 int run_command_line(int argc, char** argv, const Command& bernal, const std::string& version);
 
 // Options that several commands have.
 Option json_option(bool& json);
 Option quiet_option(bool& quiet, const std::string& what = "Print nothing but the files and errors");
-/// Of which there are `rods` if it is absent.
+/// --rods, whose default is the value of `rods`.
 Option rods_option(int& rods, int least, int most);
-/// A whole number that a scene can hold.
+/// --seed, a whole number that a scene can hold.
 Option seed_option(const std::string& what, const std::function<void(std::uint64_t)>& take);
-/// With 0 for as many as the machine has; `what` is the same for any number: "the answer".
+/// --threads, 0 for as many as the machine has; `what` does not depend on it, such as "the answer".
 Option threads_option(int& threads, const std::string& what);
-/// "90", "90s", "10m", "2h"; `seconds_of` what it was given.
+/// --time, such as "90", "90s", "10m", "2h"; `seconds_of` reads it.
 Option time_option(std::string& time, const std::string& what);
-/// None where the text is no such time, above 0 and at most 30 days.
+/// The seconds of such a time; none unless it is above 0 and at most 30 days.
 std::optional<double> seconds_of(std::string_view text);
 /// The units of length that a scene may name.
 Option with_units(Option);

@@ -15,7 +15,7 @@ Command design_command();
 Command map_command();
 Command export_command();
 Command import_command();
-// These write about all commands, so that `bernal` has to outlive them.
+// These describe all commands; `bernal` has to outlive them.
 Command completion_command(const Command& bernal);
 Command manual_command(const Command& bernal);
 

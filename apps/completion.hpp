@@ -3,9 +3,8 @@
 
 #include "command_line.hpp"
 
-// Scripts that tell a shell how the words of bernal go on: commands, options, files of the kind that is asked
-// for, and the words of those values that have some. They ask nobody when a key is pressed: all that they
-// know stands in them.
+// Scripts that complete the command line in a shell: commands, options, files of the right kind, and words of
+// options that take words. They hold all of this and run no program when a key is pressed.
 
 /// For bash 4 and later, with or without the package bash-completion.
 std::string bash_completion(const Command& bernal);

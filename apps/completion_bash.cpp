@@ -93,8 +93,8 @@ std::string offer(const std::string& bernal, const Option& option) {
                      fmt::join(files.endings, " "));
 }
 
-/// Where the words of a command are told from where they stand, which of its options the word after so many
-/// of them is: the last one for all that follow, if it takes several.
+/// The tables of the script. Values of a positional option stand under its command and its place among such
+/// words; an option that takes several words has that place and all after it.
 struct Script {
   std::string bernal;
   std::string known = {};   ///< cases that say what a command has

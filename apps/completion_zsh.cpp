@@ -7,7 +7,7 @@
 
 namespace {
 
-/// In single quotes; `special` are characters that _arguments or _describe would take for their own.
+/// Text in single quotes, with the characters escaped that are special to _arguments or _describe.
 std::string quoted(std::string_view text, std::string_view special) {
   std::string all;
   for (const char c : text) {

@@ -95,7 +95,7 @@ void print_words(const CostReport& report, bool quiet) {
   for (const auto& file : report.files) say(stdout, "{}\n", plain_text(file.string(), 5000));
 }
 
-/// The topmost folder that has to be made for this one to be there; empty where it is.
+/// The topmost folder that has to be made so that this one exists; empty if it exists.
 std::filesystem::path to_be_made(const std::filesystem::path& folder) {
   std::error_code unknown;
   std::filesystem::path top = std::filesystem::absolute(folder).lexically_normal();
@@ -105,7 +105,7 @@ std::filesystem::path to_be_made(const std::filesystem::path& folder) {
   return top;
 }
 
-/// What is refused leaves no folder behind that was not there before.
+/// Measures what accuracy costs. If the call is refused, the folders that it has made go again.
 CostReport measured(const CostCall& call, ProgressBar& bar) {
   const Scene scene = read_scene(call.scene);
   const std::filesystem::path made = to_be_made(call.folder);

@@ -15,7 +15,7 @@ Command maximise_command();
 Command target_command();
 Command best_command();
 
-/// A length or an amount in the fewest digits, at most ten, that are good to 1e-10.
+/// A length or an amount in the fewest digits, at most ten, that are right to 1e-10.
 std::string number(double value);
 /// Refuses diameters that the scene of the answer could not hold: below 1e-20 or above 1e20, so that medians
 /// of wide sizes, far below the mean, still fit.
@@ -27,8 +27,8 @@ double rounded_share(double share);
 /// Populations without share are left out, those of one diameter put together.
 std::string mixture_table(const std::vector<Population>& populations, const std::vector<double>& shares);
 
-/// The sizes that such a table stands for, read as a scene is read: what is said of them holds for what is
-/// pasted. Radii.
+/// The radii that such a table stands for, read as in a scene, so that the answer is about what the user
+/// pastes.
 std::unique_ptr<bernal::SizeDistribution> sizes_of_table(const std::string& table);
 
 void print_error(const bernal::Prediction& prediction);

@@ -15,7 +15,7 @@ using namespace bernal;
 
 namespace {
 
-/// Of the packing fraction: a size more that gains less is not worth having; the model's error is 0.01.
+/// The least gain in packing fraction for which one more size is worth having; the model's error is 0.01.
 constexpr double worth_a_size = 0.002;
 constexpr std::size_t most_sizes = 5;
 
@@ -34,7 +34,7 @@ struct BestAnswer {
   double seconds = 0;
 };
 
-/// A sieve analysis; of several empty bins in a row the limits between are left out.
+/// The bins as a sieve analysis, without the limits between empty bins.
 std::string sieve_table(const DensestDensity& density) {
   std::vector<std::string> sizes, passing;
   const std::vector<double>& shares = density.optimum.shares;

@@ -14,9 +14,9 @@ using namespace bernal;
 namespace {
 
 constexpr double most_ratio = 1e4;  ///< of diameters: more rods than anyone waits for, beyond
-/// Where no limit says how far apart two sizes may be.
+/// The largest ratio of two sizes where the user gives no limit.
 constexpr double usual_ratio = 100;
-/// ln of the least ratio tried; below it nothing differs from equal spheres.
+/// ln of the least ratio that is tried: sizes below it pack as equal spheres do.
 constexpr double narrow = 1e-4;
 /// The widest lognormal sizes without limits; with them, the widest that a scene takes.
 constexpr double widest_uncut_sigma = 3, widest_sigma = 5;
@@ -98,7 +98,7 @@ SizeFamily two_sizes(const SizeLimits& limits, int rods) {
   };
   const auto best_share = [rods](double low, double high) {
     SearchOptions options;
-    // A quarter of the rods says as well which share is best, where they are enough.
+    // A quarter of the rods is enough to find the best share, if there are many.
     options.rods = high / low < widest_ratio(rods / 4) ? rods / 4 : rods;
     options.from = {0.25, 0.75};
     return rounded_share(maximise_packing_fraction(std::vector{low, high}, options).shares[0]);

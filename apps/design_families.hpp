@@ -11,7 +11,7 @@ struct SizeLimits {
   bool from_above = false;         ///< narrower sizes keep the largest diameter, else the smallest
 };
 
-/// From what the user gave, any of it absent. Throws bernal::Error{bad_argument} in one line.
+/// The limits that follow from the options that the user gave. Throws bernal::Error{bad_argument}.
 SizeLimits limits_of(std::optional<double> min, std::optional<double> max, std::optional<double> ratio);
 
 /// A family of size distributions, ordered from narrow to wide by a number t in [from, to].
@@ -24,13 +24,13 @@ struct SizeFamily {
   double from, to;
   std::function<Member(double t)> member;
   std::string what;  ///< "lognormal sizes", then of what limits
-  /// Once t is found: the same family with all else that a member chooses for itself held fixed, so that phi
-  /// is continuous in t; empty where there is nothing else.
+  /// The family near a t that was found, with all other parameters that a member chooses held fixed, so that
+  /// phi is continuous in t; empty if there are none.
   std::function<std::function<Member(double t)>(double t)> held;
 };
 
 /// The families by name, in the order of --help.
 std::vector<std::string> family_names();
 
-/// `exponent` is that of fuller. `rods` stand for the sizes where a member is chosen by how it packs.
+/// `exponent` is that of fuller. A member that is chosen by how it packs is computed with so many `rods`.
 SizeFamily family_of(std::string_view name, const SizeLimits& limits, double exponent, int rods);

@@ -41,7 +41,7 @@ Match match_member(const std::function<SizeFamily::Member(double)>& member, doub
                                 call.rods);
 }
 
-/// What of the volume of lognormal sizes lies beyond limits of this ratio about their median.
+/// The part of the volume of lognormal sizes that lies beyond limits of this ratio about their median.
 double beyond(double ratio, double sigma) {
   return std::erfc(0.5 * std::log(ratio) / (sigma * std::sqrt(2.0)));
 }
@@ -60,7 +60,8 @@ TargetAnswer find(const TargetCall& call) {
   TargetAnswer answer{.what = family.what};
   answer.match = match_member(family.member, family.from, family.to, call);
   if (family.held && (answer.match.found || answer.match.most > call.phi)) {
-    // Near where the best share is about right, with that share: a root of what is continuous.
+    // The best share is known near the root. With that share held fixed phi is continuous and has a root
+    // there.
     const double t = answer.match.found ? answer.match.parameter : answer.match.at_most;
     const auto member = family.held(t);
     const Match held =

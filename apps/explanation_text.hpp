@@ -4,8 +4,8 @@
 
 struct Explanation;
 
-/// Lines of at most `width` characters (not bytes), broken at blanks, each after the first behind `indent`
-/// blanks; a word longer than that has a line of its own. `column` is where the first line begins.
+/// The text in lines of at most `width` characters (not bytes), broken at blanks; a longer word has a line of
+/// its own. The first line begins in `column`, the others behind `indent` blanks.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width = 100,
                     std::size_t column = 0);
 

@@ -53,7 +53,7 @@ int export_result(const ExportCall& call) try {
   return exit_code::not_reached;
 }
 
-/// "--contact-gap" of the key contact_gap.
+/// The option of a key: "--contact-gap" of contact_gap.
 std::string option_of(std::string key) {
   std::ranges::replace(key, '_', '-');
   return "--" + key;
@@ -72,7 +72,7 @@ std::vector<std::string> names_of_formats() {
   return names;
 }
 
-/// Two lines a format, from the list of formats.
+/// The list of formats for the help, two lines each.
 std::vector<Entry> entries_of_formats() {
   std::vector<Entry> entries;
   for (const ExportFormat& format : export_formats()) {
@@ -89,7 +89,7 @@ std::vector<Entry> entries_of_formats() {
   return entries;
 }
 
-/// The words that a key takes in some format.
+/// All words that a key takes in any format.
 std::vector<std::string> words_of(const std::string& key) {
   std::set<std::string> words;
   for (const ReferenceGroup& group : scene_reference())
@@ -100,7 +100,7 @@ std::vector<std::string> words_of(const std::string& key) {
   return {words.begin(), words.end()};
 }
 
-/// "gmsh, step", or "all but yade" where that is shorter.
+/// The formats that have a key: "gmsh, step", or "all but yade" where that is shorter.
 std::string formats_with(const std::string& key) {
   std::vector<std::string> with, without;
   for (const ExportFormat& format : export_formats())

@@ -13,6 +13,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
@@ -32,7 +33,7 @@ struct ImportCall {
   bool with_mesh = false, no_view = false, quiet = false;
 };
 
-/// "1,2,3"; of as many axes as the packing has.
+/// The numbers in a word such as "1,2,3".
 std::vector<double> lengths_in(const std::string& word, const std::string& option) {
   std::vector<double> lengths;
   for (std::size_t from = 0; from <= word.size();) {
@@ -49,12 +50,12 @@ std::vector<double> lengths_in(const std::string& word, const std::string& optio
   return lengths;
 }
 
-/// Words of the command line as the library takes them.
+/// The options of the library that the command line stands for.
 ImportOptions options_of(const ImportCall& call) {
   ImportOptions options = call.options;
   if (!call.unit.empty()) options.unit = unit_named(call.unit);
   if (!call.radii.empty()) options.radii = call.radii;
-  if (!call.container.empty()) options.container = call.container;
+  if (!call.container.empty()) options.container = read_scene(call.container);
   if (call.frame > 0) options.frame = call.frame;
   if (call.dimension > 0) options.dimension = call.dimension;
   return options;
@@ -97,14 +98,15 @@ std::vector<std::string> names_of_import_formats() {
   return names;
 }
 
-/// Two lines a format, from the list of formats.
+/// The list of formats for the help, two lines each.
 std::vector<Entry> entries_of_import_formats() {
   std::vector<Entry> entries;
   for (const ImportFormat& format : import_formats()) {
     std::string of;
     for (const std::string& option : format.options) of += " --" + option;
     entries.push_back(
-        {format.name, fmt::format("{}\nunit: {}{}{}", format.what, format.unit, of.empty() ? "" : ";", of)});
+        {format.name, in_words_of_command(fmt::format("{}\nunit: {}{}{}", format.what, format.unit,
+                                                      of.empty() ? "" : ";", of))});
   }
   return entries;
 }

@@ -34,7 +34,7 @@ using Row = std::pair<std::string, std::string>;
 
 std::string text_of(const Vector<3>& v) { return fmt::format("{:g}, {:g}, {:g}", v[0], v[1], v[2]); }
 
-/// The counts that are zero in a sound mesh: told only where they are not.
+/// The counts that are zero in a sound mesh; only those are printed that are not zero.
 std::vector<Row> defects(const MeshReport& report) {
   const std::pair<const char*, std::uint64_t> all[] = {
       {"open edges", report.open_edges},
@@ -51,7 +51,7 @@ std::vector<Row> defects(const MeshReport& report) {
   return rows;
 }
 
-/// What spheres of the radius find there.
+/// The chambers that spheres of the radius cannot leave.
 std::vector<Row> rows_of(const Chambers& found, const std::string& unit) {
   std::vector<Row> rows = {
       {"chambers",
@@ -66,7 +66,7 @@ std::vector<Row> rows_of(const Chambers& found, const std::string& unit) {
   return rows;
 }
 
-/// What the file tells about itself.
+/// What the file says of itself.
 std::vector<Row> rows_of_file(const InspectCall& call, const MeshReport& report) {
   std::vector<Row> rows = {{"file", plain_text(call.mesh.string())}, {"coordinates from", report.reader}};
   if (!report.unit.empty()) rows.emplace_back("unit", report.unit + ", as the file says");

@@ -48,7 +48,7 @@ Command keys_command() {
        .exit_codes = {{"0", "done"}, {"2", "bad input"}}},
       [name, json, schema] {
         if ((*json || *schema) && !name->empty()) {
-          // one object that holds all: whoever reads it looks a name up there
+          // one object with all tables, in which a reader looks up a name
           throw bernal::Error(bernal::ErrorCode::bad_argument,
                               "--json and --schema print everything that a scene may say; leave NAME out");
         }

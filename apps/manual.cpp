@@ -8,7 +8,7 @@
 
 namespace {
 
-/// One character that takes more than a byte, from the front of a text in UTF-8.
+/// Takes the first character, of more than one byte, off a text in UTF-8.
 std::uint32_t take_character(std::string_view& text) {
   const auto first = static_cast<unsigned char>(text.front());
   const std::size_t length = first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
@@ -18,7 +18,7 @@ std::uint32_t take_character(std::string_view& text) {
   return code;
 }
 
-/// As roff shows it: what would be a request, an escape or a hyphen is none.
+/// Text for roff, which shows it as it is: requests, escapes and hyphens are escaped.
 std::string plain(std::string_view text) {
   std::string roff;
   while (!text.empty()) {
@@ -61,7 +61,7 @@ std::string plain(std::string_view text) {
 std::string bold(std::string_view text) { return "\\fB" + plain(text) + "\\fR"; }
 std::string italic(std::string_view text) { return "\\fI" + plain(text) + "\\fR"; }
 
-/// "run a scene" of "Run a scene"; names such as CAD stay.
+/// A sentence with a small first letter: "run a scene". Names in capitals such as CAD stay.
 std::string begun_small(std::string text) {
   if (text.size() > 1 && std::islower(static_cast<unsigned char>(text[1])) != 0)
     text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
@@ -84,7 +84,7 @@ std::string paragraphs(std::string_view text, std::string_view between = ".PP\n"
   }
 }
 
-/// Each with what it is behind it or, where it is long, below it.
+/// A list of names, each followed by its meaning on the same line or, behind a long name, on the next.
 std::string entries(const std::vector<Entry>& all) {
   std::string roff;
   for (const Entry& entry : all) {
@@ -95,7 +95,7 @@ std::string entries(const std::vector<Entry>& all) {
   return roff;
 }
 
-/// A call is copied from the page as it stands: long ones go on in the next line.
+/// Examples. A reader copies a call from the page, so a long one is broken with a backslash.
 std::string call(std::string_view words) {
   constexpr std::size_t widest = 62;
   std::string roff;
@@ -143,7 +143,7 @@ std::string head(const Option& option) {
   return roff;
 }
 
-/// What it is, and what is asked of it beyond what that says.
+/// What an option is, and its words, range and conditions where the text does not name them.
 std::string body(const Option& option) {
   std::string text = begun_large(option.what) + ".";
   const auto says = [&](const std::string& word) { return option.what.find(word) != std::string::npos; };
@@ -198,7 +198,7 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// The pages that this one speaks of: of its commands, of the one that it belongs to and of those beside it
+/// The pages under SEE ALSO: of the command's own commands, of the command that it belongs to, and of others
 /// that its text or its examples name.
 std::vector<std::string> related(const Command& command, const std::string& whole, const Command& bernal) {
   std::vector<std::string> pages;

@@ -10,6 +10,6 @@ struct Page {
   std::string text;
 };
 
-/// One page for the command and for each of its commands, from what --help is made of. `version` is
-/// "bernal 0.1.0", `day` "2025-01-31". Pure ASCII; nothing but the arguments is in it.
+/// One page for the command and for each of its commands, made of the same data as --help. `version` is
+/// "bernal 0.1.0", `day` "2025-01-31". Pure ASCII; the same arguments give the same pages.
 std::vector<Page> manual_pages(const Command& bernal, const std::string& version, const std::string& day);

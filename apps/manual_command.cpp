@@ -32,8 +32,8 @@ struct ManualCall {
   std::filesystem::path folder;
 };
 
-/// "2025-01-31", in Greenwich: today, or the day in seconds since 1970 that builds which are to come out the
-/// same whenever they run have in SOURCE_DATE_EPOCH.
+/// The day for the pages, "2025-01-31" in UTC: that of SOURCE_DATE_EPOCH, which reproducible builds set, else
+/// today.
 std::string day_of_pages() {
   std::time_t seconds = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   if (const char* given = std::getenv("SOURCE_DATE_EPOCH")) {
@@ -49,7 +49,7 @@ std::string day_of_pages() {
                      static_cast<unsigned>(day.day()));
 }
 
-/// Under another name first, so that no half page is ever there.
+/// Writes a page under another name and renames it, so that nobody ever reads half a page.
 void write_page(const Page& page, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / (page.name + ".1");
   const std::filesystem::path whole = fmt::format("{}.{}.tmp", file.string(), getpid());

@@ -39,7 +39,7 @@ struct MeasureCall {
   std::filesystem::path local;       ///< where the table of local packing fractions goes; empty: nowhere
 };
 
-/// Draws the section and measures nothing else.
+/// Draws a section, and does no measurement.
 int draw_section(const MeasureCall& call) {
   if (call.picture.empty())
     throw Error(ErrorCode::bad_argument, "--section \"z = 1.5\" needs -o FILE.svg, where it is drawn");
@@ -53,7 +53,7 @@ int draw_section(const MeasureCall& call) {
   return exit_code::done;
 }
 
-/// From which gap on spheres hold each other.
+/// In words, from which gap on contacts tell which spheres hold which.
 std::string where_contacts_tell(const Measurements& measured) {
   if (measured.held_from) return fmt::format("of what holds what from a gap of {:g} on", *measured.held_from);
   return "of what holds what at none of these gaps";
@@ -159,7 +159,7 @@ void print_order(const BondOrder& order) {
   if (order.core) fmt::print("  in the core     {}\n", percent(*order.core));
 }
 
-/// Ten layers a column: with the usual thickness one column a mean diameter.
+/// Prints layers in columns of ten: at the usual thickness a column is one mean diameter.
 void print_layers(const WallProfile& profile) {
   constexpr std::size_t rows = 10, most_columns = 5;
   const std::size_t n = std::min(profile.layers.size(), rows * most_columns);
@@ -267,7 +267,7 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
                factor * q.asked);
 }
 
-/// Of more spheres, which take 240 bytes a cell and 20 µs, cells are made only where they are asked for.
+/// Cells of more spheres are made only on request: each takes 240 bytes and 20 µs.
 constexpr std::size_t most_cells = 20'000'000;
 
 void print(const Packing& packing, const Measurements& measured) {

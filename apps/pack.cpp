@@ -94,7 +94,7 @@ void print_result(const Packing& packing, std::uint64_t spheres, double packing_
         written.notes[i]);
 }
 
-/// Says a result that is not certified; the exit code of a run that was not stopped.
+/// Prints a warning if the result is not certified, and returns the exit code of a run that was not stopped.
 int concluded(const Packing& packing, const Certificate& certificate) {
   if (!certificate.certified) {
     say(stderr, "bernal: the result is not certified, which is a bug of bernal: {}\n", certificate.statement);
@@ -149,7 +149,8 @@ int pack(const PackCall& call) {
   };
   const Packing packing = run(plan, {call.seed, call.threads, monitor, checkpoints, folder / "engine"});
   bar.now("measure");
-  // What was stopped is written as a whole, with what can be measured at once; a second interrupt kills.
+  // A run that was stopped is written whole, with the quick measurements; a second interrupt kills the
+  // process.
   const bool stopped = packing.outcome == Outcome::cancelled;
   const auto at_once = [end = std::chrono::steady_clock::now() + std::chrono::milliseconds(300)] {
     return std::chrono::steady_clock::now() > end;

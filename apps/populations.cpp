@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_populations = 10'000;
 constexpr std::size_t longest_input = 1 << 22;
-/// Wider, and no number of rods that anyone would wait for has the volume of the largest spheres.
+/// The largest width. Of wider sizes the largest spheres, which have the volume, are missing among the rods.
 constexpr double widest = 5;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& why) {
@@ -31,7 +31,7 @@ void require_few(std::size_t populations) {
                             most_populations));
 }
 
-/// The words between any of the separators; nothing between two of them is a word too.
+/// The words between separators; between two adjacent ones stands an empty word.
 std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> words;
   for (;;) {

@@ -12,7 +12,7 @@ struct Population {
   double volume = 1;  ///< of the spheres, in any unit
 };
 
-// Each throws bernal::Error{bad_argument} in one line that names `where` it stands.
+// Each throws bernal::Error{bad_argument} whose message names `where`.
 
 /// "SIGMA" or "D43,D32,VOLUME".
 Population parse_lognormal(const std::string& text, const std::string& where);

@@ -58,7 +58,7 @@ std::vector<Population> populations_of(const PredictCall& call) {
   return populations;
 }
 
-/// The sizes in a scene, which is otherwise empty where flags or standard input give them.
+/// A scene with the sizes: that of the file, or one with nothing else if flags or standard input give them.
 Scene scene_of(const PredictCall& call) {
   Scene scene;
   if (call.scene.empty()) {
@@ -76,13 +76,13 @@ Scene scene_of(const PredictCall& call) {
   return scene;
 }
 
-/// Of the one lognormal population that a fit is for.
+/// The width of the only population, a lognormal one, which the fitted formulas need.
 double width_of(const Scene& scene) {
   const auto* only = std::get_if<Lognormal>(&std::get<Mixture>(scene.sizes).of.front());
   return only ? *only->sigma : 0;
 }
 
-/// Packs those very sizes.
+/// Packs spheres of these sizes, to check the prediction.
 PredictionCheck check(const Scene& scene, PredictCall& call) {
   ProgressBar bar(call.quiet);
   call.packing.monitor = bar.monitor();
@@ -90,7 +90,7 @@ PredictionCheck check(const Scene& scene, PredictCall& call) {
   return check_prediction(scene_to_check(scene.sizes, scene.sizes_are_diameters, call.packing), call.packing);
 }
 
-/// How the sizes were given: one way only.
+/// Throws unless the user gave the sizes in exactly one way.
 void require_one_source(const PredictCall& call) {
   const int sources =
       (!call.lognormals.empty() || !call.classes.empty()) + !call.scene.empty() + !call.format.empty();
@@ -143,7 +143,7 @@ void print(const PredictCall& call, const PredictAnswer& answer) {
   if (answer.packed) print(*answer.packed, p.phi);
 }
 
-/// A packing is an answer of its own unless it was stopped, is not certified or did not become close.
+/// The exit code: `no` if a packing is not certified, `not_reached` if it was stopped or stayed loose.
 int status_of(const PredictAnswer& answer) {
   if (!answer.packed) return exit_code::done;
   if (!answer.packed->certified) return exit_code::no;

@@ -22,8 +22,8 @@ namespace {
 constexpr double silence = 2, between_redraws = 0.1, between_lines = 10;  ///< seconds
 constexpr std::chrono::milliseconds between_ticks(100);
 
-/// Signals that come so soon after the first are the same one: `timeout` sends it to the command and to its
-/// group, a queue to a step and to each of its processes.
+/// Signals this soon after the first one count as the same one: `timeout` sends a signal to the command and
+/// to its group, and a queue to a step and to each of its processes.
 constexpr double at_once = 0.5;  ///< seconds
 
 std::atomic<bool> signalled = false;

@@ -7,24 +7,24 @@
 
 #include "bernal/core/monitor.hpp"
 
-/// Shows on standard error how far a run has come, once it has taken two seconds: one line redrawn in place
-/// on a terminal, else a plain line every ten seconds, whether or not there is news. As soon as somebody has
-/// its monitor, the first SIGINT or SIGTERM only makes `interrupted()` true, so that a run can end with what
-/// it has; one that comes more than half a second later kills.
+/// Shows the progress of a run on standard error, after the first two seconds: on a terminal one line that is
+/// redrawn, else a line every ten seconds. After `monitor()` was called the first SIGINT or SIGTERM only
+/// makes `interrupted()` true, so that the run can end with what it has; a signal more than half a second
+/// later kills the process.
 class ProgressBar {
  public:
-  /// `silent`: says nothing of an interrupt.
+  /// `silent`: prints nothing, also at an interrupt.
   ProgressBar(bool quiet, bool silent);
   explicit ProgressBar(bool quiet) : ProgressBar(quiet, quiet) {}
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// What is being done now, where nobody knows how far that is.
+  /// Names what is being done now, without a fraction.
   void now(std::string_view activity);
-  /// Shows the progress of what is such a part of all, and stops it when interrupted.
+  /// A monitor for a part of the whole work, which shows its progress and stops it at an interrupt.
   bernal::Monitor monitor(double from = 0, double to = 1);
-  /// Takes the line off the terminal, so that messages can follow.
+  /// Removes the line from the terminal, before messages.
   void clear();
 
  private:
@@ -41,7 +41,7 @@ class ProgressBar {
   double fraction_ = -1;
   double next_;  ///< seconds
   bool drawn_ = false, over_ = false;
-  std::thread ticker_;  // draws where no news comes; only where something is to be shown
+  std::thread ticker_;  // redraws when no news comes; does not run if nothing is shown
 };
 
 bool interrupted();

@@ -5,7 +5,7 @@
 #include "bernal/result/read_packing.hpp"
 #include "say.hpp"
 
-/// Says so where a result is read from where a run left it that was killed.
+/// Prints a note if the result is read from the place where a killed run left it.
 inline void say_if_unpublished(const std::filesystem::path& folder) {
   if (bernal::is_unpublished(folder))
     say(stderr,

@@ -7,7 +7,8 @@
 
 namespace bernal {
 
-/// Values from 0 to `highest` as columns of blocks; what is higher is cut. A row is 1 / rows_a_unit high.
+/// A chart of values from 0 to `highest`, columns of blocks; higher values are cut. A row is 1 / rows_a_unit
+/// high.
 void print_chart(const std::vector<double>& values, int highest, int rows_a_unit, const std::string& reach);
 
 // What `bernal measure` says of cells, waves and pores.

@@ -37,7 +37,7 @@ struct SweepCall {
   bool json = false, quiet = false;
 };
 
-/// Of "7" or "6-10", counted from 1.
+/// The cells that "7" or "6-10" names, counted from 1.
 std::optional<std::pair<std::size_t, std::size_t>> cells_of(std::string_view text) {
   const auto number = [](std::string_view digits) {
     std::size_t value = 0;
@@ -56,7 +56,7 @@ std::optional<double> seconds_a_cell(const SweepCall& call) {
   return call.time.empty() ? std::nullopt : seconds_of(call.time);
 }
 
-/// This very program, also where its file has been replaced since.
+/// The program that runs, even if its file has been replaced since.
 std::string program() {
   const std::filesystem::path self = "/proc/self/exe";
   std::error_code unknown;
@@ -64,7 +64,7 @@ std::string program() {
   return std::filesystem::exists(file, unknown) ? file.string() : self.string();
 }
 
-/// What both a process of the pool and a task of Slurm are called with.
+/// The arguments that a process of the pool and a task of Slurm have in common.
 std::vector<std::string> call_of_cells(const SweepCall& call, const Sweep& sweep, int threads,
                                        bool absolute) {
   const auto named = [&](const std::filesystem::path& path) {
@@ -90,7 +90,7 @@ std::string words_of(const Sweep& sweep, const SweepRow& row) {
 std::atomic<bool> told_to_stop = false;
 extern "C" void on_telling(int) { told_to_stop = true; }
 
-/// One cell in this process, which a pool has started; it ends with the pool, and as often as it is told to.
+/// Runs one cell in this process, which a pool has started. It ends if the pool ends.
 int run_here(const SweepCall& call, const Sweep& sweep, std::size_t number) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) std::signal(signal, on_telling);
@@ -139,7 +139,7 @@ void print_sweep_json(const Sweep& sweep, const SweepReport& report) {
   say(stdout, "{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-/// The first of them, each with its reason.
+/// Prints the first cells that failed, each with its reason.
 void print_reasons(const Sweep& sweep, const std::vector<SweepRow>& rows, const char* others) {
   constexpr std::size_t most = 5;
   for (const SweepRow& row : rows | std::views::take(most))
@@ -237,7 +237,7 @@ int sweep(const SweepCall& call) {
                        .retry = call.retry,
                        .first = chosen.first,
                        .last = chosen.second,
-                       // Tasks that run side by side do not all write the table.
+                       // A call for some of the cells, which runs beside others, writes no table.
                        .write = !call.list && call.cells.empty(),
                        .plot = call.plot,
                        .monitor = bar.monitor()};

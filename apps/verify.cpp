@@ -38,7 +38,7 @@ struct VerifyCall {
   bool json = false;
 };
 
-/// Of `--list`, `--list=all` and `--list=N`.
+/// How many overlaps `--list`, `--list=all` and `--list=N` ask for.
 std::size_t listed(const std::string& text) {
   if (text.empty()) return 0;
   if (text == "all") return CertifyOptions::all;
@@ -66,7 +66,7 @@ Scene scene_of(const VerifyCall& call) {
               {call.target.string()});
 }
 
-/// Of distances of which the small ones are known.
+/// A least distance in words, where only small distances are known.
 std::string least_text(const std::optional<double>& distance) {
   return distance ? fmt::format("{:.9g}", *distance) : "more than twice that";
 }
@@ -98,7 +98,7 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
   say(stdout, "{}\n", c.statement);
 }
 
-/// What `--settled` asks for.
+/// Which spheres rest, for `--settled`.
 Rest rest_of(const VerifyCall& call, const Scene& scene, const Spheres<dynamic>& spheres,
              const Domain& domain, bool streamed) {
   if (streamed)
@@ -128,7 +128,7 @@ void print(const Rest& rest, const VerifyCall& call, const Spheres<dynamic>& sph
     say(stdout, "           and {} more\n", grouped(rest.unsettled - rest.list.size()));
 }
 
-/// Of a result in slabs, which is certified without holding it.
+/// Whether a result is certified slab by slab, since it may be larger than memory.
 bool is_streamed(const VerifyCall& call, const Scene& scene) {
   return is_folder(call.target) && is_in_slabs(scene) && spheres_of_result(call.target).extension() == ".npy";
 }

@@ -169,7 +169,8 @@ Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, c
                     .ignore_unit_of_file = options.ignore_unit_of_file,
                     .up = options.up,
                     .weld = options.weld,
-                    .deflection = options.deflection};
+                    .deflection = options.deflection,
+                    .surfaces = options.surfaces};
   const auto read = [&] {
     ImportedMesh imported = read_mesh(obstacle, purpose);
     if (!imported.report.usable())
@@ -242,9 +243,11 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
                                   options.file.filename().string()));
   const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
+  const PolygonSurface* const given = options.surface_called(options.file);
   cad::ReadAttempt read =
-      cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
-                     assumed ? metres_per(*assumed) : 0);
+      given ? cad::read_surface(*given, options.file)
+            : cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
+                             assumed ? metres_per(*assumed) : 0);
   const Ratio ratio = ratio_of(options, read.facts, purpose.unit);
   const double factor = ratio.nearest();
 

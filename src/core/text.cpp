@@ -147,6 +147,31 @@ std::string_view trimmed(std::string_view text) {
                             : text.substr(first, text.find_last_not_of(blank) - first + 1);
 }
 
+std::string with_options(std::string_view message, const OptionInWords& in_words) {
+  constexpr std::string_view begin = "‹", end = "›";
+  std::string text;
+  while (!message.empty()) {
+    const std::size_t from = message.find(begin);
+    text += message.substr(0, from);
+    if (from == message.npos) break;
+    message.remove_prefix(from);
+    const std::size_t to = message.find(end);
+    std::string_view option = message.substr(0, to);
+    option.remove_prefix(begin.size());
+    const std::size_t equals = std::min(option.find('='), option.size());
+    const std::string_view name = option.substr(0, equals);
+    if (to == message.npos || name.empty() ||
+        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") != name.npos) {
+      text += begin;
+      message.remove_prefix(begin.size());
+      continue;
+    }
+    text += in_words(name, option.substr(std::min(equals + 1, option.size())));
+    message.remove_prefix(to + end.size());
+  }
+  return text;
+}
+
 std::string grouped(std::uint64_t n) {
   std::string digits = std::to_string(n);
   for (std::size_t from_right = 3; from_right < digits.size(); from_right += 4) {

@@ -47,7 +47,7 @@ CostReport measure_cost(const Scene& scene, const std::filesystem::path& folder,
   }
   if (!own || own->row.slower)
     throw Error(ErrorCode::bad_argument,
-                fmt::format("not one run of the scene as it is has ended in {}; give it more --time, or the "
+                fmt::format("not one run of the scene as it is has ended in {}; give it more ‹time›, or the "
                             "scene fewer spheres",
                             seconds_in_words(options.seconds)));
   CostReport report = report_of(search, whole_folder);

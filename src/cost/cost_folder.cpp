@@ -14,7 +14,7 @@ namespace bernal::cost {
 namespace {
 
 [[noreturn]] void refuse_output(const fs::path& file, const std::string& why) {
-  throw Error(ErrorCode::cannot_write, why + " give another folder with -o", {file.string()});
+  throw Error(ErrorCode::cannot_write, why + " give another ‹folder›", {file.string()});
 }
 
 bool is_named_by(const TrialRecord& record, const fs::path& file) {

@@ -203,8 +203,11 @@ Subject subject_of(const Scene& scene) {
   subject.is_predicted = subject.scene.target.predicted;
   subject.scene.target.predicted = false;  // but the number that it stands for
   if (auto* mesh = std::get_if<MeshFile>(&subject.scene.container)) {
-    mesh->file = std::filesystem::absolute(mesh->file).lexically_normal();
-    for (auto& file : mesh->obstacles) file = std::filesystem::absolute(file).lexically_normal();
+    const auto make_absolute = [&](std::filesystem::path& file) {
+      if (!mesh->surface_called(file)) file = std::filesystem::absolute(file).lexically_normal();
+    };
+    make_absolute(mesh->file);
+    std::ranges::for_each(mesh->obstacles, make_absolute);
   }
   return subject;
 }

@@ -209,11 +209,11 @@ namespace {
 std::string whole_text(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file))
     throw Error(ErrorCode::cannot_write,
-                "is a folder, and a file is to be written there; remove it, or name another folder with -o",
+                "is a folder, and a file is to be written there; remove it, or name another ‹folder›",
                 {file.string()});
   InputFile in(file);
   if (!in && stands(file))
-    throw Error(ErrorCode::cannot_write, "cannot be read; remove it, or name another folder with -o",
+    throw Error(ErrorCode::cannot_write, "cannot be read; remove it, or name another ‹folder›",
                 {file.string()});
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -278,7 +278,7 @@ std::size_t TrialRecord::read_whole(const std::string& whole, bool afresh) {
     if (number == 1 && line != header && !(afresh && line.starts_with(begin_of_header)))
       throw Error(ErrorCode::bad_argument,
                   line.starts_with(begin_of_header)
-                      ? "is the record of another version; give --fresh, or name another folder with -o"
+                      ? "is the record of another version; give ‹fresh›, or name another ‹folder›"
                       : "is no record of trials; remove it, or name another folder",
                   here);
     if (number == 1) continue;

@@ -176,7 +176,7 @@ std::string ending_of(const Search& search) {
     return cut_off == 0 ? "nothing was left to try"
                         : fmt::format(
                               "nothing was left to try but {} that {} cut off as slower, for which more "
-                              "--time is needed",
+                              "time is needed",
                               cut_off, cut_off == 1 ? "was" : "were");
   if (search.capped()) return fmt::format("the most settings were tried, {}", search.found().size());
   return "the time was over; the same call goes on from here";

@@ -7,6 +7,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <vector>
 
 #include "bernal/core/error.hpp"
 #include "files/input_file.hpp"
@@ -30,6 +31,12 @@ std::string Sha256::digits() {
   std::array<char, SHA256_DIGEST_STRING_LENGTH> digits;
   SHA256End(&state_->context, digits.data());
   return digits.data();
+}
+
+std::string sha256_of_bytes(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.digits();
 }
 
 std::string sha256_of(const fs::path& file) { return sha256_of(std::array{file}); }

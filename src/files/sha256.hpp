@@ -21,6 +21,8 @@ class Sha256 {
   std::unique_ptr<State> state_;
 };
 
+std::string sha256_of_bytes(std::string_view bytes);
+
 /// Of a file's bytes: what `sha256sum` prints. Throws Error{bad_mesh} where the file cannot be read. Cost:
 /// reading it, and about 3 ns a byte.
 std::string sha256_of(const std::filesystem::path& file);

@@ -111,7 +111,7 @@ void unscale(FileContents& contents) {
 
 /// The remedy for a frame that was cut off.
 std::string or_before(int frame) {
-  return frame > 1 ? fmt::format("; --frame {} is the one before", frame - 1) : "";
+  return frame > 1 ? fmt::format("; ‹frame={}› is the one before", frame - 1) : "";
 }
 
 void read_frame_atoms(int frame, std::uint64_t claimed, const Reading& reading, ForeignLines& lines,
@@ -121,7 +121,7 @@ void read_frame_atoms(int frame, std::uint64_t claimed, const Reading& reading, 
   bool is_scaled = false;
   if (reading.options.columns.empty()) names = with_plain_axes(std::move(names), is_scaled);
   const SphereColumns columns = sphere_columns(reading.options.columns, names, lines);
-  if (columns.x.size() != 3) lines.fail("a dump has three coordinates; --columns has to name x, y and z");
+  if (columns.x.size() != 3) lines.fail("a dump has three coordinates; ‹columns› has to name x, y and z");
   const auto id = std::ranges::find(names, "id");
   const auto id_place = static_cast<std::size_t>(id - names.begin());
   Identities identities;
@@ -191,7 +191,7 @@ Format dump_format() {
       .reads =
           "LAMMPS and LIGGGHTS dumps, text: x y z, xu yu zu or xs ys zs, radius or diameter, sorted by id; "
           "the last frame",
-      .unit_from = "ITEM: UNITS, or --unit",
+      .unit_from = "ITEM: UNITS, or ‹unit›",
       .options = {"columns", "frame"},
       .recognises = [](const FileBeginning& file) { return file.begins(item); },
       .read = read_dump};

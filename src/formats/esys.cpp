@@ -103,7 +103,7 @@ Format esys_format() {
           .least_dimension = 2,
           .write_text = write_esys,
           .reads = "ESyS-Particle and GenGeo geometry, LSMGeometry",
-          .unit_from = "--unit",
+          .unit_from = "‹unit›",
           .recognises = [](const FileBeginning& file) { return file.begins("LSMGeometry"); },
           .read = read_esys};
 }

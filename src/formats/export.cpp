@@ -81,9 +81,9 @@ void require_free_places(const Packing& packing, const Output& output, const fs:
     std::error_code unknown;
     for (const fs::path& source : sources)
       if (fs::equivalent(file, source, unknown))
-        refuse_target(file, "is what the packing is read from, or was made from; give another name with -o");
+        refuse_target(file, "is what the packing is read from, or was made from; give another ‹file›");
     if (of_result.contains(names[k]))
-      refuse_target(file, "belongs to the result in that folder; give another name with -o");
+      refuse_target(file, "belongs to the result in that folder; give another ‹file›");
     if (k > 0 && !(fs::is_regular_file(fs::symlink_status(file, unknown)) && is_as_bernal_wrote(file, files)))
       of_others.push_back(file);
   }
@@ -92,7 +92,7 @@ void require_free_places(const Packing& packing, const Output& output, const fs:
   std::ranges::stable_partition(of_others, [](const fs::path& file) { return has_seal(file); });
   refuse_target(of_others[0],
                 fmt::format("goes with {}, and what stands there bernal did not write, or somebody "
-                            "has changed it; give another name with -o, or move it away",
+                            "has changed it; give another ‹file›, or move it away",
                             names[0]));
 }
 
@@ -248,7 +248,7 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
 WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,
                            const Monitor& monitor) {
   if (table_of(asked).is_folder && stands(file))
-    throw Error(ErrorCode::cannot_write, "stands there already; give another name with -o, or move it away",
+    throw Error(ErrorCode::cannot_write, "stands there already; give another ‹file›, or move it away",
                 {file.string()});
   const fs::path meant = target_of(file);
   Output output = asked;

@@ -86,7 +86,7 @@ std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, con
         pbc != keys.end() && in_lower_case(pbc->second).find_first_of("t1") != std::string::npos;
     const ImportOptions& options = reading.options;
     if (is_asked && options.box.empty() && !options.container)
-      lines.fail("pbc says that axes repeat themselves, and no Lattice says how long they are; give --box");
+      lines.fail("pbc says that axes repeat themselves, and no Lattice says how long they are; give ‹box›");
     return {};
   }
   if (lattice.size() != 9) lines.fail("Lattice needs nine numbers");
@@ -169,7 +169,7 @@ int count_xyz_frames(const Reading& reading) {
         if (frames > 0 && reading.options.frame && *reading.options.frame <= frames) return frames;
         lines.fail(fmt::format("the file ends in its frame {}, after {} of {} atoms{}", frames + 1,
                                k > 0 ? k - 1 : 0, count,
-                               frames > 0 ? fmt::format("; --frame {} is whole", frames) : ""));
+                               frames > 0 ? fmt::format("; ‹frame={}› is whole", frames) : ""));
       }
   if (frames == 0) lines.refuse_empty();
   return frames;
@@ -224,7 +224,7 @@ Format extxyz_format() {
       .write_text = write_extxyz,
       .reads =
           "extended XYZ of OVITO and ASE: Lattice, pbc, Properties with radius or diameter; the last frame",
-      .unit_from = "unit=mm among its keys, or --unit",
+      .unit_from = "unit=mm among its keys, or ‹unit›",
       .options = {"frame"},
       .recognises = is_extxyz,
       .read = read_extxyz};

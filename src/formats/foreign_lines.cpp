@@ -229,7 +229,7 @@ void take_unit(std::string_view word, std::string_view what, std::optional<Unit>
   const std::string_view name = unit_in_letters(word);
   if (const std::string complaint = complaint_of_unit(name); !complaint.empty())
     throw Error(ErrorCode::bad_packing,
-                fmt::format("{}; convert the file, or take {} out and give --unit", complaint, what), where);
+                fmt::format("{}; convert the file, or take {} out and give ‹unit›", complaint, what), where);
   take_unit(unit_named(name), unit, where);
 }
 

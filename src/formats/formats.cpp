@@ -200,7 +200,7 @@ void require_option(const Format& reader, const std::string& option) {
   std::vector<std::string_view> others;
   for (const Format* other : readers())
     if (has(other)) others.emplace_back(other->name);
-  refuse_word(fmt::format("the format {} takes no --{}; these do: {}; --from says which the file is",
+  refuse_word(fmt::format("the format {} takes no ‹{}›; these do: {}; ‹format› says which the file is",
                           reader.name, option, fmt::join(others, ", ")));
 }
 

@@ -279,7 +279,7 @@ FileContents read_gsd(const Reading& reading) {
   } else if (!reading.has_size()) {  // writers omit what equals the schema's default
     diameters.assign(count, default_diameter);
     contents.note += fmt::format(
-        "; no diameters, which the schema takes for {} each: --diameter says another", default_diameter);
+        "; no diameters, which the schema takes for {} each: ‹diameter› says another", default_diameter);
   }
   if (!diameters.empty()) {
     table.add(diameters, 1, "diameter");
@@ -306,7 +306,7 @@ Format gsd_format() {
       .reads =
           "GSD of the HOOMD schema: HOOMD-blue, OVITO; positions, diameters and the box, whose middle is the "
           "origin; the last frame",
-      .unit_from = "\"lengths in mm\" in its header, or --unit",
+      .unit_from = "\"lengths in mm\" in its header, or ‹unit›",
       .options = {"frame"},
       .recognises = [](const FileBeginning& file) { return file.begins("\xDF\x65\xDF\x65\xDF\x65\xDF\x65"); },
       .read = read_gsd};

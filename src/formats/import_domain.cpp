@@ -9,7 +9,6 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
-#include "bernal/scene/read_scene.hpp"
 
 namespace bernal {
 namespace {
@@ -32,12 +31,12 @@ std::vector<AxisEnd> ends_of_word(const std::string& word, std::size_t dimension
     const auto axis = static_cast<std::size_t>(letter - 'x');
     if (letter < 'x' || letter > 'z' || axis >= dimension)
       refuse_words(
-          fmt::format("--periodic takes the axes that repeat themselves, such as xyz or xy, or none, "
+          fmt::format("‹periodic› takes the axes that repeat themselves, such as xyz or xy, or none, "
                       "for {} dimensions",
                       dimension));
     if (ends[axis] == AxisEnd::period)
       refuse_words(
-          fmt::format("--periodic names the axis {} twice; it takes each once, such as xyz or xy", letter));
+          fmt::format("‹periodic› names the axis {} twice; it takes each once, such as xyz or xy", letter));
     ends[axis] = AxisEnd::period;
   }
   return ends;
@@ -70,27 +69,27 @@ FileBox box_of_import(const FileContents& contents, const ImportOptions& options
   words = "as the file says";
   if (!options.box.empty()) {
     if (options.box.size() != dimension)
-      refuse_words(fmt::format("--box needs an edge for each of {} dimensions, not {}", dimension,
+      refuse_words(fmt::format("‹box› needs an edge for each of {} dimensions, not {}", dimension,
                                options.box.size()));
     box = {std::vector<double>(dimension), options.box, std::vector<AxisEnd>(dimension, AxisEnd::period)};
-    words = "as --box says";
+    words = "as ‹box› says";
   } else if (contents.box) {
     box = *contents.box;
   } else {
     if (!options.periodic.empty())
-      refuse_words("--periodic needs a box, and the file has none; give --box too, such as --box 10,10,10");
+      refuse_words("‹periodic› needs a box, and the file has none; give ‹box› too, such as ‹box=10,10,10›");
     if (dimension != 2 && dimension != 3)
-      refuse_words(fmt::format("the file has no box; give its {} edges by --box", dimension));
+      refuse_words(fmt::format("the file has no box; give its {} edges by ‹box›", dimension));
     box = {std::vector<double>(dimension), std::vector<double>(dimension),
            std::vector<AxisEnd>(dimension, AxisEnd::wrapped)};
-    words = "the bounds of the spheres, as the file has no box; --box or --container says another";
+    words = "the bounds of the spheres, as the file has no box; ‹box› or ‹container› says another";
   }
   box.lower.resize(dimension);
   box.upper.resize(dimension);
   box.ends.resize(dimension);
   if (!options.periodic.empty()) {
     box.ends = ends_of_word(options.periodic, dimension);
-    words += ", its ends as --periodic says";
+    words += ", its ends as ‹periodic› says";
   }
   std::vector<std::size_t> guessed, wrapped;
   for (std::size_t k = 0; k < dimension; ++k) {
@@ -104,11 +103,11 @@ FileBox box_of_import(const FileContents& contents, const ImportOptions& options
     }
     if (!(box.upper[k] - box.lower[k] >= smallest_length && box.upper[k] - box.lower[k] <= farthest_place))
       throw Error(ErrorCode::bad_packing,
-                  fmt::format("the box has no length along axis {}: from {} to {}; give --box", k,
+                  fmt::format("the box has no length along axis {}: from {} to {}; give ‹box›", k,
                               box.lower[k], box.upper[k]));
   }
   if (!guessed.empty())
-    words += fmt::format("; it does not say how {} end{}, which then repeat{}: --periodic says another",
+    words += fmt::format("; it does not say how {} end{}, which then repeat{}: ‹periodic› says another",
                          axes_in_words(guessed, dimension), guessed.size() == 1 ? "s" : "",
                          guessed.size() == 1 ? "s itself" : " themselves");
   if (!wrapped.empty() && (contents.box || !options.box.empty()))
@@ -152,14 +151,13 @@ ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why
   return made;
 }
 
-ImportDomain domain_of_scene(FileContents& contents, Unit unit, const std::filesystem::path& file) {
-  const Scene scene = read_scene(file);
+ImportDomain domain_of_scene(FileContents& contents, Unit unit, const Scene& scene) {
   if (scene.dimension() != contents.spheres.dimension())
     throw Error(ErrorCode::bad_packing,
                 fmt::format("the spheres have {} dimensions, but the container of the scene has {}; "
-                            "--dimension 2 takes spheres of one plane for discs",
+                            "‹dimension=2› takes spheres of one plane for discs",
                             contents.spheres.dimension(), scene.dimension()),
-                {file.string()});
+                {scene.file.string()});
   ImportDomain made;
   made.scene.unit = scene.unit;
   made.scene.container = scene.container;
@@ -174,23 +172,23 @@ ImportDomain domain_of_scene(FileContents& contents, Unit unit, const std::files
   } else {
     made.domain = packed_domain_of(scene);
   }
-  made.words = fmt::format("{}, the container of {}", name_of(made.domain), file.string());
+  made.words = fmt::format("{}, the container of {}", name_of(made.domain),
+                           scene.file.empty() ? "a scene" : scene.file.string());
   return made;
 }
 
 }  // namespace
 
-Unit unit_of_import(const FileContents& contents, const Reading& reading,
-                    const std::optional<Unit>& otherwise) {
+Unit unit_of_import(const FileContents& contents, const Reading& reading) {
   const std::optional<Unit>& asked = reading.options.unit;
   if (contents.unit && asked && *contents.unit != *asked)
     throw Error(ErrorCode::bad_argument,
-                fmt::format("says itself that it is in {}; leave --unit out", name_of(*contents.unit)),
+                fmt::format("says itself that it is in {}; leave ‹unit› out", name_of(*contents.unit)),
                 {reading.file.string()});
   if (contents.unit) return *contents.unit;
   if (asked) return *asked;
-  if (otherwise) return *otherwise;
-  throw Error(ErrorCode::bad_packing, "does not say the unit of its lengths; give it, such as --unit mm",
+  if (reading.options.container) return reading.options.container->unit;
+  throw Error(ErrorCode::bad_packing, "does not say the unit of its lengths; give it, such as ‹unit=mm›",
               {reading.file.string()});
 }
 
@@ -198,7 +196,7 @@ ImportDomain domain_of_import(FileContents& contents, Unit unit, const Reading& 
   const ImportOptions& options = reading.options;
   if (options.container) {
     if (!options.periodic.empty() || !options.box.empty())
-      refuse_words("--container says what the spheres lie in; leave --box and --periodic out");
+      refuse_words("‹container› says what the spheres lie in; leave ‹box› and ‹periodic› out");
     return domain_of_scene(contents, unit, *options.container);
   }
   std::string why;

@@ -18,7 +18,6 @@ struct ImportDomain {
 ImportDomain domain_of_import(FileContents& contents, Unit unit, const Reading& reading);
 
 /// The unit of a file: its own, else that of the options, else that of the scene with the container.
-Unit unit_of_import(const FileContents& contents, const Reading& reading,
-                    const std::optional<Unit>& otherwise);
+Unit unit_of_import(const FileContents& contents, const Reading& reading);
 
 }  // namespace bernal

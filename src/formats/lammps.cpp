@@ -280,7 +280,7 @@ bool counts_atoms(const FileBeginning& file) {
 std::optional<Unit> unit_of_style(std::string_view name, const CsvLines& lines) {
   for (const UnitStyle& style : unit_styles)
     if (style.name == name) return style.length;
-  lines.fail(fmt::format("{} is no style of units of LAMMPS; mend the word, or take it out and give --unit",
+  lines.fail(fmt::format("{} is no style of units of LAMMPS; mend the word, or take it out and give ‹unit›",
                          bernal::quoted(name)));
 }
 
@@ -311,9 +311,9 @@ Format lammps_format() {
           .sizes = "diameter",
           .write_text = write_lammps,
           .reads =
-              "LAMMPS and LIGGGHTS data files, atom_style sphere or granular, or another with --diameter; an "
+              "LAMMPS and LIGGGHTS data files, atom_style sphere or granular, or another with ‹diameter›; an "
               "upright box, periodic unless a remark says \"boundary p p f\"",
-          .unit_from = "remarks \"units = si\", \"lengths in mm\", or --unit",
+          .unit_from = "remarks \"units = si\", \"lengths in mm\", or ‹unit›",
           .recognises = counts_atoms,
           .read = read_lammps_data};
 }

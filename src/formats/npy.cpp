@@ -51,7 +51,7 @@ SphereColumns array_columns(const Reading& reading, const NpyFile& array,
   if (!reading.options.columns.empty() || !array.names().empty())
     return sphere_columns(reading.options.columns, names, CsvLines(reading.file));
   if (names.size() != 3 && names.size() != 4)
-    array.fail(fmt::format("has {} columns; say what they are, such as --columns {}", names.size(),
+    array.fail(fmt::format("has {} columns; say what they are, such as ‹columns={}›", names.size(),
                            names.size() == 2 ? "x,y" : "x0,x1,x2,x3,r"));
   SphereColumns columns = columns_xyzr();
   columns.names = names;
@@ -92,7 +92,7 @@ FileContents read_npy(const Reading& reading) {
   contents.note = columns.in_words();
   const std::filesystem::path beside = reading.options.radii.value_or(radii_beside(reading.file));
   if (reading.options.radii && columns.size)
-    throw Error(ErrorCode::bad_argument, "the file has sizes of its own; leave --radii out");
+    throw Error(ErrorCode::bad_argument, "the file has sizes of its own; leave ‹radii› out");
   if (reading.options.radii ||
       (!columns.size && !reading.has_size() && kind_of_file(beside) == FileKind::regular)) {
     contents.spheres.r = read_radii(beside, array.rows());
@@ -111,7 +111,7 @@ Format npy_format() {
           .wraps = false,
           .write = write_columns,
           .reads = "NumPy array, a row x, y, z, r for each sphere, or x, y, z",
-          .unit_from = "--unit",
+          .unit_from = "‹unit›",
           .options = {"columns", "radii"},
           .recognises = is_npy,
           .read = read_npy};

@@ -99,7 +99,7 @@ Format openmc_format() {
           .endings = {radii_ending, script_ending_py},
           .unit = Unit::cm,
           .write = write_openmc,
-          .reads = "OpenMC centres, .npy of N x 3, with FILE_radii.npy beside them, --radii or --radius",
+          .reads = "OpenMC centres, .npy of N x 3, with FILE_radii.npy beside them, ‹radii› or ‹radius›",
           .unit_from = "cm",
           .options = {"columns", "radii"},
           .recognises =

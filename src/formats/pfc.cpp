@@ -115,7 +115,7 @@ Format pfc_format() {
       .unit = Unit::m,
       .write_text = write_pfc,
       .reads = "Itasca PFC: commands \"ball create\" and \"model domain\"",
-      .unit_from = "\"lengths in m\" in a comment, or --unit",
+      .unit_from = "\"lengths in m\" in a comment, or ‹unit›",
       .recognises =
           [](const FileBeginning& file) { return file.has("\nball create ") || file.begins("ball create "); },
       .read = read_pfc};

@@ -11,7 +11,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::string_view example_of_wish = "--columns x,y,z,r (r radius, d diameter, - another column)";
+constexpr std::string_view example_of_wish = "‹columns=x,y,z,r› (r radius, d diameter, - another column)";
 
 bool names_radius(std::string_view word) {
   return word == "r" || word == "radius" || word == "radii" || word == "rad" || word == "particle_radius" ||
@@ -83,12 +83,12 @@ SphereColumns columns_by_name(const std::vector<std::string>& names, const CsvLi
   if (!choice.is_complete())
     lines.fail(
         fmt::format("the columns are called {}, and none or not all of x, y, z; say which they are, such "
-                    "as --columns x=3,y=4,z=5,d=7",
+                    "as ‹columns=x=3,y=4,z=5,d=7›",
                     bernal::quoted(fmt::format("{}", fmt::join(names, " ")))));
   if (choice.twice)
     lines.fail(
         fmt::format("of the columns {} two may be a coordinate or the size; say which are meant, such "
-                    "as --columns x=3,y=4,z=5,d=7",
+                    "as ‹columns=x=3,y=4,z=5,d=7›",
                     bernal::quoted(fmt::format("{}", fmt::join(names, " ")))));
   return choice.columns(names);
 }
@@ -103,8 +103,8 @@ std::size_t place_of_wish(std::string_view word, const std::vector<std::string>&
     return *number - 1;
   lines.fail(
       names.empty()
-          ? fmt::format("--columns: {} is no number of a column, which count from 1", bernal::quoted(word))
-          : fmt::format("--columns: there is no column {}; there are {}", bernal::quoted(word),
+          ? fmt::format("‹columns›: {} is no number of a column, which count from 1", bernal::quoted(word))
+          : fmt::format("‹columns›: there is no column {}; there are {}", bernal::quoted(word),
                         bernal::quoted(fmt::format("{}", fmt::join(names, " ")))));
 }
 
@@ -166,19 +166,19 @@ SphereColumns sphere_columns(const std::string& wish, const std::vector<std::str
     }
     if (!choice.take(role, place))
       lines.fail(
-          fmt::format("--columns: {} is neither a coordinate nor a size; write x, y, z and r or d, - for "
+          fmt::format("‹columns›: {} is neither a coordinate nor a size; write x, y, z and r or d, - for "
                       "another column, or x=3,y=4,z=5,d=7",
                       bernal::quoted(word)));
   }
   if (choice.twice)
     lines.fail(
-        fmt::format("--columns names a coordinate or the size twice; write it such as {}", example_of_wish));
+        fmt::format("‹columns› names a coordinate or the size twice; write it such as {}", example_of_wish));
   if (!choice.is_complete())
-    lines.fail(fmt::format("--columns names not all coordinates; write it such as {}", example_of_wish));
+    lines.fail(fmt::format("‹columns› names not all coordinates; write it such as {}", example_of_wish));
   SphereColumns columns = choice.columns(names);
   if (!names.empty() && columns.least_fields() > names.size())
     lines.fail(
-        fmt::format("--columns names {} columns, and the file has {}", columns.least_fields(), names.size()));
+        fmt::format("‹columns› names {} columns, and the file has {}", columns.least_fields(), names.size()));
   return columns;
 }
 

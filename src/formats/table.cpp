@@ -117,7 +117,7 @@ void take_units_of(const SphereColumns& columns, const TableHead& head, const Cs
     if (head.units[place] != head.units[places.front()])
       lines.fail(
           fmt::format("the header says {} of {} and {} of {}; say one unit for all of them, or none and give "
-                      "--unit",
+                      "‹unit›",
                       unit_of_heading(head, places.front()), head.names[places.front()],
                       unit_of_heading(head, place), head.names[place]));
   if (const std::string& said = head.units[places.front()]; !said.empty()) lines.take_unit(said, unit);
@@ -169,8 +169,8 @@ Format table_format() {
       .name = "table",
       .reads =
           "a table of any program, spheres.csv among them: commas, semicolons, tabs or blanks between the "
-          "columns, whose names its first line or --columns gives",
-      .unit_from = "# unit: mm, x [mm], or --unit",
+          "columns, whose names its first line or ‹columns› gives",
+      .unit_from = "# unit: mm, x [mm], or ‹unit›",
       .options = {"columns"},
       .recognises = [](const FileBeginning&) { return true; },
       .read = read_table};

@@ -60,10 +60,10 @@ FileContents read_vtk(const Reading& reading) {
   if (!columns.size && !reading.has_size()) {
     const std::vector<std::string> arrays(all.names.begin() + 3, all.names.end());
     file.fail(arrays.empty()
-                  ? "has points without data, and so no sizes; give --diameter or --radius"
+                  ? "has points without data, and so no sizes; give ‹diameter› or ‹radius›"
                   : fmt::format(
                         "has for its points {}, none of which is called radius or diameter; say which is the "
-                        "size, such as --columns x,y,z,r={}, or give --diameter or --radius",
+                        "size, such as ‹columns=x,y,z,r={}›, or give ‹diameter› or ‹radius›",
                         bernal::quoted(fmt::format("{}", fmt::join(arrays, " "))), arrays.front()));
   }
   FileContents contents{.spheres = all.spheres(columns, points.size(), "point", 0, reading)};
@@ -108,8 +108,8 @@ Format vtk_format() {
       .reads =
           "VTK's points with radii, .vtk, .vtp and .vtu: ParaView, LIGGGHTS, YADE, MFiX, bernal's "
           "spheres.vtp; "
-          "arrays called radius, radii or r, diameter or d, or another by --columns x,y,z,r=NAME",
-      .unit_from = "\"lengths in mm\" in its title or a comment, or --unit",
+          "arrays called radius, radii or r, diameter or d, or another by ‹columns=x,y,z,r=NAME›",
+      .unit_from = "\"lengths in mm\" in its title or a comment, or ‹unit›",
       .options = {"columns"},
       .recognises = [](const FileBeginning& file) { return file.begins(legacy_mark) || file.has(xml_mark); },
       .read = read_vtk};

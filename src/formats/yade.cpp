@@ -83,7 +83,7 @@ Format yade_format() {
           .unit = Unit::m,
           .write_text = write_yade,
           .reads = "YADE, what export.textExt writes: #format x_y_z_r, or another with these",
-          .unit_from = "--unit",
+          .unit_from = "‹unit›",
           .recognises = [](const FileBeginning& file) { return file.begins(format_mark); },
           .read = read_yade};
 }

@@ -200,7 +200,7 @@ class SpheresInWalls {
 };
 
 constexpr std::string_view how_to_import =
-    "for the packing of another program, import --periodic none makes its box walls";
+    "for the packing of another program, import with ‹periodic=none› makes its box walls";
 
 Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
              const RestOptions& options, const std::shared_ptr<const Container>& made) {

@@ -13,6 +13,8 @@
 #include "cad/read/files_of_part.hpp"
 #include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
+#include "files/sha256.hpp"
+#include "scene/given_files.hpp"
 
 namespace bernal {
 namespace {
@@ -53,16 +55,23 @@ std::vector<Stamp> stamps_of(const std::vector<std::filesystem::path>& files) {
 /// Those beside the parts included.
 std::vector<std::filesystem::path> all_files_of(const MeshFile& mesh) {
   std::vector<std::filesystem::path> all;
-  for (const std::filesystem::path& part : files_of(mesh))
+  for (const std::filesystem::path& part : files_of(mesh)) {
+    if (mesh.surface_called(part)) continue;
     for (std::filesystem::path& file : files_of_part(part)) all.push_back(std::move(file));
+  }
   return all;
 }
 
+std::string digest_of_part(const Scene& scene, const std::filesystem::path& part) {
+  const std::optional<std::string> given = content_given(scene, part);
+  return given ? sha256_of_bytes(*given) : sha256_of_part(part);
+}
+
 /// Notes the digests, or holds the files to those that stand there.
-void pin_files(MeshFile& mesh) {
+void pin_files(const Scene& scene, MeshFile& mesh) {
   std::vector<std::string> digests;
   for (const std::filesystem::path& file : files_of(mesh)) {
-    const std::string digest = sha256_of_part(file);
+    const std::string digest = digest_of_part(scene, file);
     const std::size_t k = digests.size();
     if (k < mesh.sha256.size() && in_lower_case(mesh.sha256[k]) != digest)
       throw OptionError("sha256", fmt::format("{} is not the file that is meant: its SHA-256 is {}; leave "
@@ -90,7 +99,7 @@ struct MakeDomain {
       const std::vector<std::filesystem::path> files = all_files_of(mesh);
       const std::vector<Stamp> before = stamps_of(files);
       ImportedMesh imported = read_container_mesh(mesh, {unit, smallest});
-      pin_files(mesh);
+      pin_files(scene, mesh);
       if (stamps_of(files) != before)
         throw Error(ErrorCode::bad_mesh, "has changed while it was read", {mesh.file.string()});
       notes = in_words(imported.report, mesh, unit);
@@ -145,7 +154,7 @@ std::vector<std::filesystem::path> changed_files(const Scene& scene) {
   if (!mesh) return changed;
   const std::vector<std::filesystem::path> files = files_of(*mesh);
   for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
-    if (sha256_of_part(files[k]) != in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
+    if (digest_of_part(scene, files[k]) != in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
   return changed;
 }
 

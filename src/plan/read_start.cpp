@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +12,7 @@
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"
+#include "scene/given_files.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/unpublished.hpp"
@@ -28,17 +30,28 @@ std::vector<double> edges_of(const PeriodicBox& box) {
   return std::vector<double>(static_cast<std::size_t>(box.dimension), *box.edge);
 }
 
-/// Of a folder that holds a result its spheres are meant, and the box that they lie in.
-void look_into_folder(Scene& scene) {
+/// Of a packing, in a folder or in none, its spheres are meant, and the box that they lie in.
+void look_into_packing(Scene& scene) {
   Start& start = scene.start;
   std::error_code unknown;
-  if (!std::filesystem::is_directory(*start.file, unknown)) return;
-  const Scene there = scene_in(*start.file);
+  if (!start.packing && !std::filesystem::is_directory(*start.file, unknown)) return;
+  const Scene there = start.packing ? start.packing->scene : scene_in(*start.file);
   const double in_our_unit = conversion_factor(there.unit, scene.unit);
   if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty())
     for (const double edge : edges_of(*box)) start.box.push_back(in_our_unit * edge);
   if (!start.unit) start.unit = there.unit;
-  *start.file = only_spheres_file_in(*start.file);
+  if (!start.packing) *start.file = only_spheres_file_in(*start.file);
+}
+
+/// The spheres as they stand there, and the digest of the very bytes that they come from.
+std::pair<NamedColumns, std::string> spheres_of(const Scene& scene) {
+  const Start& start = scene.start;
+  if (start.packing)
+    return {{start.packing->spheres, {}, 1}, sha256_of_bytes(*content_given(scene, *start.file))};
+  Sha256 digest;
+  NamedColumns read =
+      read_spheres(where_it_stands(*start.file), [&](std::string_view bytes) { digest.add(bytes); });
+  return {std::move(read), digest.digits()};
 }
 
 /// The box that the spheres lie in, where it repeats itself.
@@ -101,15 +114,13 @@ void complete_count(Scene& scene, std::size_t there) {
 StartSpheres read_start(Scene& scene) {
   if (!scene.start.file) return {};
   std::error_code unknown;
-  if (!std::filesystem::exists(*scene.start.file, unknown))
+  if (!scene.start.packing && !std::filesystem::exists(*scene.start.file, unknown))
     refuse(scene, "start",
            fmt::format("there is no file or folder {}; its name is relative to the scene's file",
                        scene.start.file->string()));
-  look_into_folder(scene);
+  look_into_packing(scene);
   Start& start = scene.start;
-  Sha256 digest;  // of the very bytes that the spheres come from
-  NamedColumns read =
-      read_spheres(where_it_stands(*start.file), [&](std::string_view bytes) { digest.add(bytes); });
+  auto [read, digest] = spheres_of(scene);
   const std::string file = start.file->string();
   if (!read.unit.empty() && start.unit && read.unit != name_of(*start.unit))
     refuse(scene, "start_unit",
@@ -121,7 +132,7 @@ StartSpheres read_start(Scene& scene) {
            fmt::format("the spheres of {} have {} dimension{}, but the scene has {}", file, dimension,
                        dimension == 1 ? "" : "s", scene.dimension()));
   if (read.spheres.empty()) throw Error(ErrorCode::bad_packing, "there are no spheres in it", {file});
-  pin_digest(scene, digest.digits());
+  pin_digest(scene, digest);
   complete_box(scene);
   complete_count(scene, read.spheres.size());
   if (!scene.draws()) scene.sizes.locations.whole = scene.locations.of("start");

@@ -1,4 +1,4 @@
-// The rod model forwards and backwards. Sizes are those of scenes.
+// Predictions by the rod model, and searches for sizes that pack as asked.
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -43,7 +43,7 @@ JobPointer predict_job(const Scene& scene, int rods, double gap_factor) {
   });
 }
 
-/// The sizes of the parts, all of them diameters, mixed by volume; those without a share are left out.
+/// The sizes of the parts, which are diameters, mixed by volume. Parts without a share are left out.
 std::unique_ptr<SizeDistribution> mixed(const std::vector<Scene>& parts, std::span<const double> shares) {
   Mixture mixture{.of = {}, .shares = {}, .basis = Basis::volume};
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -57,7 +57,7 @@ std::unique_ptr<SizeDistribution> mixed(const std::vector<Scene>& parts, std::sp
   return radii_of(scene);
 }
 
-/// Where all parts are of one size each the search knows a quicker way.
+/// The search is quicker where each part is of one size.
 JobPointer maximise_job(const std::vector<Scene>& parts, int rods) {
   return std::make_unique<Job>([=](const Monitor& monitor) -> Job::Finish {
     const SearchOptions options{.rods = rods, .from = {}, .monitor = monitor};
@@ -73,7 +73,7 @@ JobPointer maximise_job(const std::vector<Scene>& parts, int rods) {
   });
 }
 
-/// `family` answers with a scene that has the sizes; called in whatever thread the search is.
+/// `family` returns a scene with the sizes; the thread of the search calls it.
 JobPointer target_job(const py::function& family, double from, double to, double target, int rods) {
   const std::shared_ptr<py::function> held(new py::function(family), [](py::function* function) {
     const Locked lock;

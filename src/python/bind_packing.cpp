@@ -1,5 +1,7 @@
-// A packing: its columns as arrays that look into it, and what is said of it beside the spheres.
+// A packing: its columns as arrays without copies, its domain, how its run went, pictures, pickles.
+#include <memory>
 #include <string>
+#include <string_view>
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -7,6 +9,7 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/report/picture.hpp"
 #include "bernal/report/section.hpp"
+#include "bernal/scene/packing_bytes.hpp"
 #include "bernal/viewer/view_page.hpp"
 #include "python/bindings.hpp"
 #include "python/lock.hpp"
@@ -16,7 +19,7 @@ namespace py = pybind11;
 namespace bernal::python {
 namespace {
 
-/// An array that looks at `column`, cannot be written to, and keeps `owner` alive.
+/// A read-only array over the memory of `column`, which keeps `owner` alive.
 py::array view_of(const std::vector<double>& column, const py::object& owner) {
   py::array_t<double> view(static_cast<py::ssize_t>(column.size()), column.data(), owner);
   view.attr("setflags")(py::arg("write") = false);
@@ -54,7 +57,7 @@ py::tuple bounds_of_domain(const Packing& packing) {
                         std::vector<double>(bounds.upper.begin(), bounds.upper.end()));
 }
 
-/// Vertices and triangles as flat copies; none where the domain is no mesh.
+/// Copies of vertices and triangles; None where the domain is no mesh.
 py::object walls_of(const Packing& packing) {
   const auto* mesh = std::get_if<Mesh>(&packing.domain);
   if (!mesh) return py::none();
@@ -102,6 +105,10 @@ void bind_packing(py::module_& module) {
       .def("domain", [](const Packing& packing) { return name_of(packing.domain); })
       .def(
           "view", [](const Packing& packing) { return view_page(packing); }, OthersRun())
+      .def(py::pickle([](const Packing& packing) { return py::bytes(bytes_of(packing)); },
+                      [](const py::bytes& bytes) {
+                        return std::make_shared<Packing>(packing_of_bytes(std::string_view(bytes)));
+                      }))
       .def_property_readonly("dimension", [](const Packing& p) { return p.spheres.dimension(); })
       .def_property_readonly("packing_fraction", &Packing::packing_fraction)
       .def_property_readonly("outcome", [](const Packing& p) { return name_of(p.outcome); })

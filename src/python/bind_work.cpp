@@ -1,4 +1,4 @@
-// What takes time, each as a Job whose result is an object of Python.
+// Functions that take time: each returns a Job whose result is an object of Python.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -45,7 +45,7 @@ JobPointer explain_job(const Scene& scene) {
   });
 }
 
-/// `estimate` is what it does while there is nothing yet that an interrupt could leave.
+/// During the activity "estimate" there is no packing yet that an interrupt could return.
 JobPointer pack_job(const Scene& scene, std::optional<std::uint64_t> seed, int threads) {
   return job([=](const Monitor& monitor) {
     monitor.report({"estimate", -1, {}});
@@ -78,7 +78,7 @@ py::array_t<T> array_of(const std::vector<T>& values) {
   return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-/// What is measured of single spheres, each with one entry a sphere; a chamber of -1 is none.
+/// Arrays with one entry for each sphere. A sphere in no chamber has -1.
 py::dict per_sphere(const Measurements& measured) {
   py::dict all;
   if (measured.local) {
@@ -142,18 +142,16 @@ JobPointer export_job(const PackingPointer& of, const std::string& format,
   });
 }
 
-/// The name of a format's file, where nobody gives one.
+/// The default name of a format's file.
 std::string file_of_format(const std::string& name) {
   for (const ExportFormat& format : export_formats())
     if (format.name == name) return format.file;
   throw Error(ErrorCode::bad_argument, "no such format: " + name);
 }
 
-/// `options` is a scene whose container is the mesh; else the file stands for itself.
-JobPointer inspect_job(const Path& name, const Scene* options, std::optional<double> radius,
-                       const std::optional<Path>& places) {
-  MeshFile file{.file = name};
-  if (options) file = std::get<MeshFile>(options->container);
+/// Inspects the mesh that is the container of the scene.
+JobPointer inspect_job(const Scene& scene, std::optional<double> radius, const std::optional<Path>& places) {
+  const auto& file = std::get<MeshFile>(scene.container);
   if (radius && !(*radius > 0)) throw Error(ErrorCode::bad_argument, "radius must be a length above 0");
   return job([=](const Monitor& monitor) {
     monitor.report({"diagnose", -1, {}});
@@ -164,7 +162,7 @@ JobPointer inspect_job(const Path& name, const Scene* options, std::optional<dou
     if (places) write_places(imported, *places);
     std::optional<Chambers> chambers;
     if (radius && usable) chambers = chambers_for(imported.mesh, *radius);
-    return text(inspection_as_json(name, file.unit ? name_of(*file.unit) : std::string_view(),
+    return text(inspection_as_json(file.file, file.unit ? name_of(*file.unit) : std::string_view(),
                                    imported.report, chambers, lines));
   });
 }
@@ -173,10 +171,43 @@ std::optional<Unit> unit_of(const Text& name) {
   return name ? std::optional<Unit>(unit_named(*name)) : std::nullopt;
 }
 
-JobPointer import_job(const Path& file, const std::string& format, const std::string& columns,
+JobPointer import_job(std::function<ImportedPacking(const Monitor&)> import) {
+  return job([import = std::move(import)](const Monitor& monitor) -> Job::Finish {
+    ImportedPacking made = import(monitor);
+    auto shared = std::make_shared<Packing>(std::move(made.packing));
+    return [shared, notes = std::move(made.notes)]() -> py::object {
+      py::dict all;
+      for (const auto& [about, words] : notes) all[py::str(about)] = in_words_of_python(words);
+      return py::make_tuple(shared, all);
+    };
+  });
+}
+
+std::optional<Scene> scene_if(const Scene* scene) {
+  return scene ? std::optional<Scene>(*scene) : std::nullopt;
+}
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Centres of shape (N, D) and radii of shape (N,).
+JobPointer import_arrays_job(const Numbers& centers, const Numbers& radii, const std::string& unit,
+                             const Scene* container, const std::vector<double>& box,
+                             const std::string& periodic) {
+  Spheres<dynamic> spheres;
+  spheres.x.assign(static_cast<std::size_t>(centers.shape(1)), {});
+  for (py::ssize_t i = 0; i < centers.shape(0); ++i)
+    for (py::ssize_t k = 0; k < centers.shape(1); ++k)
+      spheres.x[static_cast<std::size_t>(k)].push_back(centers.at(i, k));
+  spheres.r.assign(radii.data(), radii.data() + radii.size());
+  const ImportOptions options{
+      .unit = unit_named(unit), .box = box, .periodic = periodic, .container = scene_if(container)};
+  return import_job([=](const Monitor& monitor) { return import_spheres(spheres, options, monitor); });
+}
+
+JobPointer import_file_job(const Path& file, const std::string& format, const std::string& columns,
                       std::optional<double> diameter, std::optional<double> radius,
                       const std::optional<Path>& radii, const Text& unit, const std::vector<double>& box,
-                      const std::string& periodic, const std::optional<Path>& container,
+                      const std::string& periodic, const Scene* container,
                       const std::vector<double>& shift, std::optional<int> frame,
                       std::optional<int> dimension) {
   const ImportOptions options{.format = format,
@@ -187,19 +218,11 @@ JobPointer import_job(const Path& file, const std::string& format, const std::st
                               .unit = unit_of(unit),
                               .box = box,
                               .periodic = periodic,
-                              .container = container,
+                              .container = scene_if(container),
                               .shift = shift,
                               .frame = frame,
                               .dimension = dimension};
-  return job([=](const Monitor& monitor) -> Job::Finish {
-    ImportedPacking made = import_packing(file, options, monitor);
-    auto shared = std::make_shared<Packing>(std::move(made.packing));
-    return [shared, notes = std::move(made.notes)]() -> py::object {
-      py::dict all;
-      for (const auto& [about, words] : notes) all[py::str(about)] = words;
-      return py::make_tuple(shared, all);
-    };
-  });
+  return import_job([=](const Monitor& monitor) { return import_packing(file, options, monitor); });
 }
 
 }  // namespace
@@ -221,7 +244,8 @@ void bind_work(py::module_& module) {
   module.def("export", &export_job);
   module.def("file_of_format", &file_of_format);
   module.def("inspect", &inspect_job);
-  module.def("import_", &import_job);
+  module.def("import_", &import_file_job);
+  module.def("import_arrays", &import_arrays_job);
 }
 
 }  // namespace bernal::python

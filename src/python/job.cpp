@@ -56,16 +56,17 @@ struct Job::State {
 
 namespace {
 
-/// What runs, for the end of the program.
+/// The jobs that run, for the end of the program.
 struct Running {
   std::mutex mutex;
   std::condition_variable none;
-  std::set<std::atomic<bool>*> cancelled;  // of each job whose thread still asks for it
-  std::size_t threads = 0;                 // that have not let go of everything yet
+  std::set<std::atomic<bool>*> cancelled;  // the flags of jobs whose work has not ended
+  std::size_t threads = 0;                 // those that still hold anything of their work
   bool ending = false;
   std::thread::id ender;
 };
-/// Those of this process: in one that was forked off runs none of its parent's. Outlives every thread.
+/// Those of this process: in a forked process no job of the parent runs. Never destroyed, since threads use
+/// it.
 Running& running() {
   static auto* all = new Running;
   static pid_t process = getpid();

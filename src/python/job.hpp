@@ -11,29 +11,29 @@
 
 namespace bernal::python {
 
-/// Work that goes on in a thread of its own and knows nothing of Python, so that whoever waits for it can
-/// hear interrupts, show how far it has come, and give up waiting. What it makes becomes an object of Python
-/// in the thread that asks for that.
+/// Work in a thread of its own that does not use Python. The thread that waits for it can meanwhile react to
+/// interrupts, show progress and stop waiting. `result` makes an object of Python in the thread that calls
+/// it.
 class Job {
  public:
-  using Finish = std::function<pybind11::object()>;  ///< called with the interpreter's lock, others without
+  using Finish = std::function<pybind11::object()>;  ///< called with the interpreter's lock
   using Work = std::function<Finish(const Monitor&)>;
 
-  /// Begins; throws Ending where that is too late. What `work` and its answer hold may be destroyed in any
-  /// thread without the interpreter's lock.
+  /// Starts the work. Throws Ending if the program ends. Any thread may destroy what `work` and its answer
+  /// hold, without the interpreter's lock.
   explicit Job(Work work);
-  /// Tells the work to stop at its next safe point and does not wait for that.
+  /// Tells the work to stop at its next safe point, without waiting for that.
   ~Job();
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
-  /// Whether the work has ended, after waiting so long for it at most; the interpreter runs on meanwhile.
+  /// Waits at most so long, without the interpreter's lock, and returns whether the work has ended.
   bool wait(double seconds) const;
-  /// Activity, fraction (negative where nobody knows), detail: see Progress.
+  /// Activity, fraction (negative if unknown) and detail, see Progress.
   std::tuple<std::string, double, std::string> progress() const;
   /// Asks the work to stop at its next safe point.
   void cancel();
-  /// What came of it; throws what the work threw. Precondition: it has ended.
+  /// The result; throws what the work threw. Precondition: it has ended.
   pybind11::object result();
 
  private:
@@ -41,17 +41,17 @@ class Job {
   std::shared_ptr<State> state_;
 };
 
-/// The program ends, and nothing new may begin.
+/// The program ends, and no job may begin.
 struct Ending : std::exception {
   const char* what() const noexcept override { return "nothing can begin any more, since the program ends"; }
 };
 
-/// Whether stop_all_jobs was called, in another thread.
+/// Whether another thread has called stop_all_jobs.
 bool is_ending_elsewhere();
 
-/// Stops all work and waits until the last thread has ended: what it uses is about to be taken down. From
-/// then on nothing begins. Work that has come to no safe point after five seconds is left alone; the process
-/// then ends without taking down what such work uses.
+/// Stops all jobs and waits until their threads have ended, before the process destroys what they use. From
+/// then on no job begins. If a job reaches no safe point within five seconds, the process ends without
+/// destroying anything.
 void stop_all_jobs();
 
 }  // namespace bernal::python

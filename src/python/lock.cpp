@@ -12,7 +12,7 @@ std::atomic<bool>& ended() {
   return is;
 }
 
-/// Whether the interpreter has begun to end; Python says so in public since 3.13.
+/// Whether the interpreter has begun to end. The function is public since Python 3.13.
 bool is_ending() {
 #if PY_VERSION_HEX >= 0x030D0000
   return Py_IsFinalizing();

@@ -5,16 +5,17 @@
 
 namespace bernal::python {
 
-// The interpreter's lock, as pybind11 has it, but for the end of the interpreter: it then ends each thread
-// that asks for its lock by unwinding its stack (`pthread_exit`), which C++ cannot go along with. Such a
-// thread stays where it is until the process ends.
+// The interpreter's lock. At its end the interpreter stops each thread that asks for the lock by unwinding
+// its stack (`pthread_exit`), which destructors of C++ do not survive, and pybind11's guards do nothing about
+// it. With these guards such a thread waits instead until the process ends.
 
-/// Never comes back; called without the interpreter's lock.
+/// Waits for ever. Precondition: the thread does not hold the interpreter's lock.
 [[noreturn]] void stay();
 
-/// What `call` answers; stays if the interpreter ends the thread meanwhile. Precondition: `call` throws
-/// nothing, and what it holds needs no destructor, which would run without the lock. A destructor does it: a
-/// `catch` of such an end is refused where another exception is being handled.
+/// Returns what `call` returns; waits for ever if the interpreter stops the thread during the call.
+/// Precondition: `call` does not throw, and nothing in it needs a destructor, which would run without the
+/// lock. A guard's destructor detects the unwinding, because `catch` does not work while another exception is
+/// handled.
 template <class Call>
 auto or_stay(const Call& call) {
   struct Guard {
@@ -33,13 +34,13 @@ auto or_stay(const Call& call) {
   }
 }
 
-/// What a function of Python answers, in a thread that may be ended meanwhile. Throws what it raises.
+/// Calls a function of Python in a thread that the interpreter may stop meanwhile. Throws what it raises.
 pybind11::object called(const pybind11::object& function, const pybind11::tuple& arguments);
 
-/// From now on nobody gets the lock by `Locked`: the interpreter is about to go.
+/// From now on `Locked` waits for ever: the interpreter is about to end.
 void end_locking();
 
-/// Holds the interpreter's lock in a thread that the interpreter need not know.
+/// Holds the interpreter's lock, in any thread.
 class Locked {
  public:
   Locked();
@@ -51,7 +52,7 @@ class Locked {
   PyGILState_STATE before_;
 };
 
-/// Lets others have the interpreter's lock, which the thread holds before and afterwards.
+/// Releases the interpreter's lock, and takes it again at the end.
 class Unlocked {
  public:
   Unlocked() : thread_(PyEval_SaveThread()) {}

@@ -1,9 +1,10 @@
-// bernal._core: what the package around it stands on. Scenes come as TOML and answers go as JSON, so that
-// checks, messages and names are the library's own.
+// bernal._core, the extension below the package. Scenes come as TOML and answers go as JSON, so the library
+// makes all checks, messages and names. Spheres, surfaces and meshes are arrays.
 #include <system_error>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/monitor.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/engine/engine_error.hpp"
 #include "bernal/version.hpp"
 #include "python/bindings.hpp"
@@ -31,7 +32,8 @@ std::string_view name_of(ErrorCode code) {
   return "";
 }
 
-/// Makes the exception of an Error from code, message without the place, file, line and column.
+/// A function of the package that makes an exception of code, message without the place, file, line and
+/// column.
 py::object& exception_of_error() {
   static auto* const made = new py::object;  // outlives the interpreter
   return *made;
@@ -41,6 +43,7 @@ void raise(const Error& error, std::string_view code) {
   const Location& where = error.location();
   std::string message = error.what();
   if (const std::string place = where.text(); !place.empty()) message.erase(0, place.size() + 2);
+  message = in_words_of_python(message);
   const py::object raised =
       called(exception_of_error(),
              py::make_tuple(code, message, where.file, where.line, where.column));
@@ -56,7 +59,7 @@ void translate(std::exception_ptr thrown) {
     raise(error, name_of(error.code()));
   } catch (const Cancelled&) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
-  } catch (const Ending& ending) {  // the first ends other threads without a word
+  } catch (const Ending& ending) {  // SystemExit ends other threads silently
     if (is_ending_elsewhere()) return PyErr_SetNone(PyExc_SystemExit);
     PyErr_SetString(PyExc_RuntimeError, ending.what());
   } catch (const std::system_error& error) {
@@ -65,6 +68,16 @@ void translate(std::exception_ptr thrown) {
 }
 
 }  // namespace
+
+std::string in_words_of_python(std::string_view message) {
+  return with_options(message, [](std::string_view name, std::string_view value) -> std::string {
+    const std::string word(name), said(value);
+    if (value.empty()) return word;
+    if (value.find_first_not_of("0123456789.,") != value.npos) return word + "='" + said + "'";
+    return word + (value.find(',') == value.npos ? "=" + said : "=[" + said + "]");
+  });
+}
+
 }  // namespace bernal::python
 
 PYBIND11_MODULE(_core, module) {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the type stubs of a package that is built into its folder: write_stubs.py FOLDER.
 
-Type checkers and editors cannot see classes that are made while the package is read; here they are, made of the same
-table, beside all else that the package offers, with its docstrings.
+Type checkers and editors do not see classes that the package makes at run time. The stubs have them, made of the same
+table, with all else that the package offers and its docstrings.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-sys.path[0] = str(Path(sys.argv[1]).resolve().parent)  # beside this script stands the package that is not built
+sys.path[0] = str(Path(sys.argv[1]).resolve().parent)  # the package beside this script is not the built one
 
 import bernal  # noqa: E402
 from bernal import _classes, _scene  # noqa: E402

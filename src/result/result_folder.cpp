@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,7 @@
 #include "files/bytes_of_file.hpp"
 #include "files/sha256.hpp"
 #include "report/report.hpp"
+#include "scene/given_files.hpp"
 #include "scene/output_table.hpp"
 #include "scene/unpublished.hpp"
 
@@ -59,17 +61,13 @@ struct NamedFile {
   fs::path& file;
   std::string sha256;
 };
-std::vector<NamedFile> files_named_in(Scene& scene) {
+std::vector<NamedFile> files_and_digests(Scene& scene) {
+  const auto* mesh = std::get_if<MeshFile>(&scene.container);
+  std::vector<std::string> digests = mesh ? mesh->sha256 : std::vector<std::string>();
+  digests.resize(mesh ? 1 + mesh->obstacles.size() : 0);
+  digests.push_back(scene.start.sha256.empty() ? std::string() : scene.start.sha256.front());
   std::vector<NamedFile> files;
-  if (auto* mesh = std::get_if<MeshFile>(&scene.container)) {
-    const auto digest = [&](std::size_t k) {
-      return k < mesh->sha256.size() ? mesh->sha256[k] : std::string();
-    };
-    files.push_back({mesh->file, digest(0)});
-    for (fs::path& obstacle : mesh->obstacles) files.push_back({obstacle, digest(files.size())});
-  }
-  if (Start& start = scene.start; start.file)
-    files.push_back({*start.file, start.sha256.empty() ? std::string() : start.sha256.front()});
+  for (fs::path* const file : files_named_in(scene)) files.push_back({*file, digests[files.size()]});
   return files;
 }
 
@@ -118,15 +116,19 @@ Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path&
   Scene scene = packing.scene;
   scene.seed = packing.seed;
   const Manifest earlier = manifest_of(folder);
-  for (auto& [file, sha256] : files_named_in(scene)) {
-    if (stands_in(file, folder)) {
+  for (auto& [file, sha256] : files_and_digests(scene)) {
+    const std::optional<std::string> given = content_given(packing.scene, file);
+    if (!given && stands_in(file, folder)) {
       const auto copy = earlier.find(file.filename().string());
       if (copy != earlier.end() && copy->second == sha256) manifest.insert(*copy);
       continue;
     }
-    if (!with_mesh) continue;
+    if (!given && !with_mesh) continue;
     const std::string name = name_of_copy(file, sha256).string();
-    if (!manifest.contains(name)) {
+    if (given) {
+      staged.write(name, *given);
+      manifest[name] = sha256;
+    } else if (!manifest.contains(name)) {
       const fs::path there = staged.add(name);
       std::error_code problem;
       fs::copy_file(where_it_stands(file), there, problem);
@@ -152,9 +154,12 @@ void check_writable(const fs::path& folder) {
 
 void check_writable(const fs::path& folder, const Scene& scene, const WriteOptions& options) {
   Scene packed = scene;
-  const std::vector<NamedFile> files = files_named_in(packed);
-  if (options.with_mesh && files.empty())
-    throw Error(ErrorCode::bad_argument, "--with-mesh copies a CAD file, and this container is none");
+  const std::vector<NamedFile> named_files = files_and_digests(packed);
+  if (options.with_mesh && named_files.empty())
+    throw Error(ErrorCode::bad_argument, "‹with_mesh› copies a CAD file, and this container is none");
+  std::vector<NamedFile> files;
+  std::ranges::remove_copy_if(named_files, std::back_inserter(files),
+                              [&](const NamedFile& named) { return is_given(scene, named.file); });
   for (const auto& [file, sha256] : files) {
     if (!is_utf8(file.string()))
       refuse(file, "has a name that is not UTF-8, which scene.toml has to be; rename it");
@@ -176,7 +181,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
     const fs::path meant = fs::weakly_canonical(fs::absolute(file), unknown);
     if (std::ranges::find(names, meant.filename().string()) == names.end() || !stands_in(meant, folder))
       continue;
-    refuse(file, fmt::format("is {}{}, and the result would take its place; give another folder with -o",
+    refuse(file, fmt::format("is {}{}, and the result would take its place; give another ‹folder›",
                              is_start ? "what the scene starts from" : "the part that the scene packs",
                              file.filename() == meant.filename() ? "" : ", by a link"));
   }
@@ -190,12 +195,12 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
       if (holds_only(there, folder, earlier)) continue;
       refuse(there,
              "is a folder with more in it than bernal wrote, or changed since, and the result would take its "
-             "place; give another folder with -o, or move it away");
+             "place; give another ‹folder›, or move it away");
     }
     if (name == "scene.toml" && is_as_written(there)) continue;
     refuse(there,
            "is no result of bernal's, or was changed since, and the result would take its place; give "
-           "another folder with -o, or remove it");
+           "another ‹folder›, or remove it");
   }
 }
 

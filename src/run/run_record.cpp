@@ -5,10 +5,6 @@
 
 namespace bernal {
 
-static void archive(Archive& a, Milestone& m) {
-  a(m.stage, m.spheres, m.packing_fraction, m.potential, m.max_overlap, m.seconds);
-}
-
 void RunRecord::conclude() {
   if (const Effect asked = asked_of_walls(); asked.calls > 0) effects_["walls"] += asked;
   packing_.effects = effects_.all();

@@ -27,7 +27,7 @@ const std::vector<schema::Key>& output_keys() {
       key(Type::file, name_of_output(), "file",
           "its name in the folder of the result; if absent that of the format"),
       word(&Output::unit, "unit",
-           "of its lengths; if absent what the program expects, see bernal export --help",
+           "of its lengths; if absent the one that the program expects",
            {unit_names().begin(), unit_names().end()}),
       number(&Output::density, "density", "of the spheres, in kg/m3; 2500 is glass", above(0, 1e30)),
       integer(

@@ -90,7 +90,7 @@ void spheres_rule(const Scene& scene, const Section& section) {
   // The one that is read last is all that the scene still holds.
   if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
     section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
-  const auto& [file, unit, box, sha256] = scene.start;
+  const auto& [file, unit, box, sha256, packing] = scene.start;
   const auto* periodic = std::get_if<PeriodicBox>(&scene.container);
   if (!file && (unit || !box.empty() || !sha256.empty()))
     section.fail(unit           ? "start_unit"

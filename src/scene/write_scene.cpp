@@ -5,6 +5,8 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "files/staged_folder.hpp"
+#include "scene/given_files.hpp"
 #include "scene/output_table.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
@@ -88,11 +90,7 @@ std::string engine_as_toml(const SceneEngine& engine) {
                      lines(entry, schema::options_of(engine)));
 }
 
-std::string container_as_toml(SceneContainer container, const std::filesystem::path& folder) {
-  if (auto* mesh = std::get_if<MeshFile>(&container); mesh && !folder.empty()) {
-    mesh->file = std::filesystem::proximate(mesh->file, folder);
-    for (std::filesystem::path& file : mesh->obstacles) file = std::filesystem::proximate(file, folder);
-  }
+std::string container_as_toml(const SceneContainer& container) {
   const schema::Entry& entry = schema::entry_of(container);
   return fmt::format("[container]\nkind = {}\n{}", toml_string(entry.name),
                      lines(entry, schema::options_of(container)));
@@ -130,11 +128,12 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
     throw Error(ErrorCode::bad_argument,
                 fmt::format("TOML cannot hold the seed {}: it is above 2^63 - 1", scene.seed));
   Scene named = scene;
-  if (auto& start = named.start.file; start && !folder.empty())
-    start = std::filesystem::proximate(*start, folder);
+  if (!folder.empty())
+    for (std::filesystem::path* const file : files_named_in(named))
+      if (!is_given(scene, *file)) *file = std::filesystem::proximate(*file, folder);
   std::string out =
       fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
-                  container_as_toml(scene.container, folder), lines(schema::spheres_entry(), &named),
+                  container_as_toml(named.container), lines(schema::spheres_entry(), &named),
                   lines(schema::accuracy_entry(), &scene));
   if (scene.engine) out += engine_as_toml(*scene.engine);
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
@@ -145,6 +144,16 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
     out += fmt::format("\n[[output]]\nformat = {}\n{}", toml_string(output.format), lines(entry, &output));
   }
   return out;
+}
+
+void write_scene(const Scene& scene, const std::filesystem::path& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  StagedFolder staged(folder);
+  Scene named = scene;
+  for (const std::filesystem::path* const name : files_named_in(named))
+    if (const auto content = content_given(scene, *name)) staged.write(name->filename().string(), *content);
+  staged.write(file.filename().string(), scene_as_toml(scene, folder));
+  staged.publish();
 }
 
 std::string sizes_in_words(const SceneSizes& sizes) {

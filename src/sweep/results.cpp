@@ -45,7 +45,7 @@ void refuse_foreign(const fs::path& file, bool is_ours) {
   if (stands(file) && !is_ours)
     throw Error(
         ErrorCode::cannot_write,
-        "is not as bernal sweep wrote it, and would be replaced; remove it, or give another folder with -o",
+        "is not as bernal sweep wrote it, and would be replaced; remove it, or give another ‹folder›",
         {file.string()});
 }
 

@@ -136,7 +136,7 @@ class Pool {
         queue_.push_front(k);
         if (children_.size() == 0)
           throw Error(ErrorCode::bad_argument,
-                      "the system has no room for another process; give fewer --jobs");
+                      "the system has no room for another process; give fewer ‹jobs›");
         return;
       }
       row(k).result = {};

@@ -49,7 +49,7 @@ void require_plain(const fs::path& folder) {
     if (static_cast<unsigned char>(c) < 0x20 || c == '%' || c == '\\' || c == '"')
       throw Error(
           ErrorCode::bad_argument,
-          "Slurm takes no folder with control characters, %, \\ or \" in its name; give another one with -o",
+          "Slurm takes no folder with control characters, %, \\ or \" in its name; give another ‹folder›",
           {folder.string()});
 }
 
@@ -63,7 +63,7 @@ fs::path write_slurm_script(const Sweep& sweep, const fs::path& folder, const Sl
   if (stands(file) && !is_sealed(bytes_of_file(file)))
     throw Error(
         ErrorCode::cannot_write,
-        "is not as bernal sweep wrote it, and would be replaced; remove it, or give another folder with -o",
+        "is not as bernal sweep wrote it, and would be replaced; remove it, or give another ‹folder›",
         {file.string()});
   const sweep::CheckedCells checked = sweep::check_cells(sweep, 1, sweep.size(), true, {});
 

@@ -27,11 +27,7 @@ namespace {
 
 constexpr std::size_t digits_of_hash = 16;
 
-std::string digest_of(std::string_view text) {
-  Sha256 sha;
-  sha.add(text);
-  return sha.digits().substr(0, digits_of_hash);
-}
+std::string digest_of(std::string_view text) { return sha256_of_bytes(text).substr(0, digits_of_hash); }
 
 /// Of what is refused without the place, which stands in front of it.
 std::string message_of(const Error& error) {

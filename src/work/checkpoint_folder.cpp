@@ -184,17 +184,17 @@ class FileReader final : public Archive {
   if (there.version != here.version)
     refuse(folder,
            fmt::format("holds a checkpoint of bernal {}, and this is {}: go on with that one, or leave "
-                       "--resume out to start anew",
+                       "‹resume› out to start anew",
                        there.version, here.version));
   if (there.scene != here.scene)
     refuse(folder,
-           "holds a checkpoint of another scene: name its scene or another folder, or leave --resume out to "
+           "holds a checkpoint of another scene: name its scene or another folder, or leave ‹resume› out to "
            "start anew");
   if (there.files != here.files)
     refuse(folder,
            "holds a checkpoint of a run with another CAD file or start than stands there now: put that back, "
-           "or leave --resume out to start anew");
-  refuse(folder, fmt::format("holds a checkpoint of the seed {0}: give --seed {0}, or leave --resume out to "
+           "or leave ‹resume› out to start anew");
+  refuse(folder, fmt::format("holds a checkpoint of the seed {0}: give ‹seed={0}›, or leave ‹resume› out to "
                              "start anew",
                              there.seed));
 }
@@ -259,7 +259,7 @@ std::unique_ptr<Archive> CheckpointFolder::open(const CheckpointOwner& owner, st
     (*file)(found);
     if (std::memcmp(found, format, sizeof format) != 0)
       refuse(folder_,
-             "holds a checkpoint that this version of bernal cannot read: leave --resume out to start "
+             "holds a checkpoint that this version of bernal cannot read: leave ‹resume› out to start "
              "anew");
     (*file)(there);
     if (!(there == owner)) refuse_other(folder_, owner, there);

@@ -32,7 +32,7 @@ Checkpoints::Checkpoints(const Monitor& monitor, const CheckpointOptions& option
   if (!options.resume) {
     if (CheckpointFolder::stands_in(options.folder))
       tell(options_, fmt::format("a run that was ended left a checkpoint in {}, which this one will replace; "
-                                 "--resume would go on from it",
+                                 "‹resume› would go on from it",
                                  options.folder.string()));
     return;
   }
@@ -66,7 +66,7 @@ void Checkpoints::go_on(Part& part) {
   if (name != part.name_)
     throw Error(ErrorCode::bad_packing,
                 fmt::format("a checkpoint goes on with \"{}\" where this run has \"{}\", which is a bug of "
-                            "bernal; leave --resume out to start anew",
+                            "bernal; leave ‹resume› out to start anew",
                             name, part.name_));
   part.state_(*source_);
   part.resumed_ = true;

@@ -7,12 +7,10 @@
 #include <vector>
 
 #include "bernal/scene/packing.hpp"
-#include "core/archive.hpp"
 #include "core/made.hpp"
+#include "scene/run_archive.hpp"
 
 namespace bernal {
-
-inline void archive(Archive& a, Effect& effect) { a(effect.name, effect.calls, effect.seconds); }
 
 /// Counts what each effect of a run did and how long it took. One writer: the thread that runs the stages.
 class EffectLog {

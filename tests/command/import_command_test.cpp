@@ -3,6 +3,7 @@
 #include <chrono>
 #include <thread>
 
+#include "bernal/core/text.hpp"
 #include "bernal/formats/import.hpp"
 #include "check.hpp"
 #include "support/packings.hpp"
@@ -100,10 +101,14 @@ TEST(ImportCommand, ItsSceneFreesTheSpheresWhereTheyAre) {
 
 TEST(ImportCommand, HelpListsEveryFormat) {
   const std::string help = bernal({"import", "--help"}).out;
+  const auto in_words = [](const std::string& text) {
+    return with_options(
+        text, [](std::string_view name, std::string_view) { return "--" + std::string(name); });
+  };
   for (const ImportFormat& format : import_formats()) {
     const std::size_t at = help.find("\n  " + format.name + " ");
     ASSERT_NE(at, std::string::npos) << format.name;
-    EXPECT_NE(help.find("unit: " + format.unit, at), std::string::npos);
+    EXPECT_NE(help.find("unit: " + in_words(format.unit), at), std::string::npos);
     for (const std::string& option : format.options)
       EXPECT_NE(help.find("--" + option, at), std::string::npos) << option;
   }

@@ -99,7 +99,7 @@ TEST(CheckpointFuzz, WhatBelongsToAnotherRunIsRefused) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_argument);
-    EXPECT_NE(std::string(error.what()).find("give --seed 1"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("give ‹seed=1›"), std::string::npos) << error.what();
   }
   options.seed.reset();
   const Plan other = testing::plan_of(

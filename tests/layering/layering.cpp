@@ -121,7 +121,47 @@ std::string objection(const Include& include, const Place& place, const fs::path
   return include.path + ": " + place.room + " must not see it";
 }
 
+/// The string literals of C++, each with its line; comments have none.
+std::vector<std::pair<int, std::string>> literals_of(const std::string& text) {
+  static const std::regex token(
+      R"re(//[^\n]*|/\*[^]*?\*/|R"([^(]*)\([^]*?\)\1"|"(?:\\[^]|[^"\\])*"|'(?:\\.|[^'\\])')re");
+  std::vector<std::pair<int, std::string>> literals;
+  int line = 1;
+  std::size_t counted = 0;
+  for (std::sregex_iterator found(text.begin(), text.end(), token), end; found != end; ++found) {
+    const auto at = static_cast<std::size_t>(found->position());
+    line += static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(counted),
+                                        text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    counted = at;
+    if (const std::string part = found->str(); part[0] == '"' || part[0] == 'R')
+      literals.emplace_back(line, part);
+  }
+  return literals;
+}
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+bool is_source(const fs::path& file) {
+  return file.extension() == ".hpp" || file.extension() == ".cpp" || file.extension() == ".cu";
+}
+
 }  // namespace
+
+std::vector<std::string> option_words(const fs::path& root) {
+  static const std::regex option(R"((?:^|[" ;]|[^r]\()(--[a-z][a-z-]*|-o)(?![a-z=-]|:[^ ]))");
+  std::vector<std::string> found;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "src")) {
+    if (!is_source(entry.path())) continue;
+    for (const auto& [line, text] : literals_of(bytes_of(entry.path())))
+      if (std::smatch match; std::regex_search(text, match, option))
+        found.push_back(fs::relative(entry.path(), root).string() + ":" + std::to_string(line) + ": " +
+                        match[1].str());
+  }
+  return found;
+}
 
 std::map<std::string, Rule> read_rules(const fs::path& readme) {
   std::ifstream in(readme);
@@ -144,7 +184,7 @@ std::vector<std::string> violations(const fs::path& root, const std::map<std::st
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const fs::path& file = entry.path();
-      if (file.extension() != ".hpp" && file.extension() != ".cpp" && file.extension() != ".cu") continue;
+      if (!is_source(file)) continue;
       const fs::path below_root = fs::relative(file, root);
       const Place place = place_of(below_root);
       const auto rule = rules.find(place.room);

@@ -26,4 +26,9 @@ std::map<std::string, Rule> read_rules(const std::filesystem::path& readme);
 std::vector<std::string> violations(const std::filesystem::path& root,
                                     const std::map<std::string, Rule>& rules);
 
+/// Every option of a command line in a string literal of C++ below src/ of `root`, as "file:line: --word":
+/// the library leaves to the front ends what its options are called. Options of other programs, which have
+/// their value behind "=", and properties of style sheets are none of these.
+std::vector<std::string> option_words(const std::filesystem::path& root);
+
 }  // namespace bernal::layering

@@ -59,14 +59,38 @@ TEST(Layering, ARoomStandsBelowThoseThatItIncludes) {
   fs::remove(readme);
 }
 
-/// A source tree of one file, under the real rules.
-std::vector<std::string> violations_of(const std::string& file, const std::string& text) {
+TEST(Layering, TheLibraryDoesNotSpeakCommandLine) {
+  for (const std::string& word : option_words(source)) ADD_FAILURE() << word;
+}
+
+/// What `look` finds in a source tree of one file.
+template <class Look>
+auto found_in(const std::string& file, const std::string& text, const Look& look) {
   const fs::path root = scratch();
   fs::create_directories((root / file).parent_path());
   std::ofstream(root / file) << text << '\n';
-  const auto found = violations(root, read_rules(source / "src/README.md"));
+  const auto found = look(root);
   fs::remove_all(root);
   return found;
+}
+
+std::vector<std::string> violations_of(const std::string& file, const std::string& text) {
+  const auto rules = read_rules(source / "src/README.md");
+  return found_in(file, text, [&](const fs::path& root) { return violations(root, rules); });
+}
+
+TEST(Layering, PlantedOptionWordsAreFound) {
+  const auto words_in = [](const std::string& text) {
+    return found_in("src/core/a.cpp", text, &option_words);
+  };
+  EXPECT_EQ(words_in("\n// \"--no\"\nf('\"', \"a \\\" give --with-mesh\");").at(0),
+            "src/core/a.cpp:3: --with-mesh");
+  for (const char* text : {"f(\"--unit: {}\");", "f(\"(see --help)\");", "f(R\"(\"give --box\")\");",
+                           "f(\"by -o, or\");"})
+    EXPECT_EQ(words_in(text).size(), 1u) << text;
+  for (const char* text : {"--count;", "// give --unit", "/* \" */ --k; /* \" */", "f(\"mpi --mpi=pmix\");",
+                           "f(\"{ --ink:#111; fill:var(--ink) }\");", "f(\"non-overlapping a--b\");"})
+    EXPECT_TRUE(words_in(text).empty()) << text;
 }
 
 TEST(Layering, PlantedViolationsAreFound) {

@@ -219,10 +219,33 @@ class Refusals(InFolder):
                 self.assertNotIn("--", said)
                 self.assertNotIn("\n", said)
 
-    def test_packings_are_written_and_not_pickled(self):
+    def test_each_front_end_has_its_own_words_for_options(self):
+        (self.folder / "table.csv").write_text("x,y,z\n0,0,0\n")
+        (self.folder / "rows.csv").write_text("1,2,3,4\n")
+        for words, keys, command, python in (
+            ([], {}, "give --diameter or --radius, or", "give diameter or radius, or"),
+            (["--radius", "1"], {"radius": 1}, "such as --unit mm", "such as unit='mm'"),
+            (["--radius", "1", "--unit", "mm", "--periodic", "xyz"], {"radius": 1, "unit": "mm", "periodic": "xyz"},
+             "give --box too, such as --box 10,10,10", "give box too, such as box=[10,10,10]"),
+            (["--frame", "2"], {"frame": 2}, "takes no --frame; these do", "takes no frame; these do"),
+            (["--frame", "2"], {"frame": 2}, "--from says which", "format says which"),
+        ):  # fmt: skip
+            done = subprocess.run([COMMAND, "import", "table.csv", "-o", "out", *words], capture_output=True, text=True)
+            self.assertIn(command, done.stderr)
+            self.refuses(bernal.InputError, python, lambda: bernal.import_("table.csv", **keys))
+        done = subprocess.run([COMMAND, "import", "rows.csv", "-o", "out"], capture_output=True, text=True)
+        self.assertIn("such as --columns x,y,z,r (r radius", done.stderr)
+        self.refuses(bernal.InputError, "such as columns='x,y,z,r' (r radius", lambda: bernal.import_("rows.csv"))
+        notes = bernal.import_("table.csv", radius=1, unit="mm").notes
+        self.assertIn("; box or container says another", notes.domain)
+        bernal.pack(small(count=5)).write("out")
+        self.refuses(bernal.WriteError, "give another file", lambda: bernal.export("out", "lammps", "out/packing.svg"))
+        done = subprocess.run([COMMAND, "export", "out", "--to", "lammps", "-o", "out/packing.svg"],
+                              capture_output=True, text=True)  # fmt: skip
+        self.assertIn("give another name with -o", done.stderr)
+
+    def test_packings_do_not_change(self):
         packing = bernal.pack(small(count=5))
-        self.refuses(TypeError, "bernal.read", lambda: pickle.dumps(packing))
-        self.assertIs(copy.copy(packing), packing)
         self.refuses(ValueError, "WRITEABLE", lambda: packing.centers.setflags(write=True))
         self.assertIsInstance(packing.centers.base, bytes)
 

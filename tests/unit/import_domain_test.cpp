@@ -99,7 +99,7 @@ TEST(ImportDomain, ASceneGivesItsPart) {
                                   "unit = \"mm\"\n[container]\nkind = \"mesh\"\nfile = \"part.off\"\n"
                                   "[spheres]\nradius = 1\ncount = 2\n");
   const auto table = folder.write("a.csv", "# unit: cm\nx,y,z,r\n0.5,0.5,0.5,0.1\n0.5,1.5,2.95,0.1\n");
-  const Packing packing = import_packing(table, {.container = scene}).packing;
+  const Packing packing = import_packing(table, {.container = read_scene(scene)}).packing;
   EXPECT_EQ(packing.scene.unit, Unit::mm);
   EXPECT_NEAR(packing.volume, 6000, 1e-9);
   const auto& part = std::get<MeshFile>(packing.scene.container);

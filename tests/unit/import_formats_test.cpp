@@ -79,16 +79,16 @@ TEST(ImportTable, IsRefusedInOneLine) {
   };
   expect_refusal({"a.csv", "", mm}, {"a.csv", "no spheres"});
   expect_refusal({"a.csv", "x,y,z,r\n", mm}, {"a.csv:1", "no spheres"});
-  expect_refusal({"a.csv", "1,2,3,0.5\n", mm}, {"a.csv:1", "--columns x,y,z,r"});
-  expect_refusal({"a.csv", "x,y,z,r\n1,2,3,0.5\n"}, {"a.csv", "--unit mm"});
-  expect_refusal({"a.csv", "x,y,z\n1,2,3\n", mm}, {"a.csv", "--diameter or --radius"});
+  expect_refusal({"a.csv", "1,2,3,0.5\n", mm}, {"a.csv:1", "‹columns=x,y,z,r›"});
+  expect_refusal({"a.csv", "x,y,z,r\n1,2,3,0.5\n"}, {"a.csv", "‹unit=mm›"});
+  expect_refusal({"a.csv", "x,y,z\n1,2,3\n", mm}, {"a.csv", "‹diameter› or ‹radius›"});
   expect_refusal({"a.csv", "x,y,z,r\n1,nan,3,0.5\n", mm}, {"a.csv:2", "y = \"nan\" is not finite"});
   expect_refusal({"a.csv", "x,y,z,r\n1,2,3,-0.5\n", mm}, {"a.csv:2", "radius -0.5"});
   expect_refusal({"a.csv", "x,y,z,d\n1,2,3,0\n", mm}, {"a.csv:2", "diameter 0"});
   expect_refusal({"a.csv", "x,y,z,r\n1,2,3,0.5\n4,5,6\n", mm}, {"a.csv:3", "3 fields", "4"});
   expect_refusal({"a.csv", "x;y;z;r;\n1;2;3;0.5;7;\n", mm}, {"a.csv:2", "fields", "4"});
   expect_refusal({"a.csv", "x;y;z;r;\n1;2;3;\n", mm}, {"a.csv:2"});
-  expect_refusal({"a.csv", "x,y,z,r,d\n1,2,3,4,5\n", mm}, {"a.csv:1", "--columns x=3"});
+  expect_refusal({"a.csv", "x,y,z,r,d\n1,2,3,4,5\n", mm}, {"a.csv:1", "‹columns=x=3"});
   expect_refusal({"a.csv", "x,y,q,r\n1,2,3,4\n", with("x,y,z,r")}, {"a.csv", "no column \"z\""});
   expect_refusal({"a.txt", "1 2 3 4\n", with("x,y,zz,r")}, {"\"zz\"", "x, y, z and r or d"});
   expect_refusal({"a.txt", "1 2 3 4\n", with("x,z,r")}, {"not all coordinates"});
@@ -97,11 +97,11 @@ TEST(ImportTable, IsRefusedInOneLine) {
   expect_refusal({"a.csv", "0,5;1,5;2,5;0,5\n", with("x,y,z,r")}, {"a.csv:1", "\"0,5\" is not a number"});
   expect_refusal({"a.csv", "x,y,z,r\n1,2,3,0.5\n", {.radius = 2, .unit = Unit::mm}}, {"sizes of its own"});
   expect_refusal({"a.csv", "# unit: mm\nx,y,z,r\n1,2,3,0.5\n", {.unit = Unit::cm}},
-                 {"a.csv", "in mm", "--unit"});
+                 {"a.csv", "in mm", "‹unit›"});
   expect_refusal({"a.csv", "x,y,z,r\n1,2,3,0.5\n", {.format = "lamps", .unit = Unit::mm}},
                  {"did you mean \"lammps\"?"});
   expect_refusal({"a.csv", "x,y,z,r\n1,2,3,0.5\n", {.unit = Unit::mm, .frame = 1}},
-                 {"takes no --frame", "dump"});
+                 {"takes no ‹frame›", "dump"});
 }
 
 constexpr const char* dump_head =
@@ -155,10 +155,10 @@ TEST(ImportDump, IsRefusedInOneLine) {
                       atoms + "1 1 1 1 1\n",
                   m},
                  {"a:6", "triclinic", "upright"});
-  expect_refusal({"a", box + "ITEM: ATOMS id x y z\n1 1 1 1\n2 2 2 2\n", m}, {"--diameter"});
-  expect_refusal({"a", dump_head}, {"--unit mm"});
+  expect_refusal({"a", box + "ITEM: ATOMS id x y z\n1 1 1 1\n2 2 2 2\n", m}, {"‹diameter›"});
+  expect_refusal({"a", dump_head}, {"‹unit=mm›"});
   expect_refusal({"a", std::string(dump_head) + (box + atoms) + "1 1 1 1 1\n", m},
-                 {"frame 2", "1 of them", "--frame 1"});
+                 {"frame 2", "1 of them", "‹frame=1›"});
 }
 
 TEST(ImportLammps, DataOfSpheresAndOfAtoms) {
@@ -183,7 +183,7 @@ TEST(ImportLammps, DataOfSpheresAndOfAtoms) {
                  {"a.data:16", "diameter 0"});
   expect_refusal({"a.data", head + "Atoms # ellipsoid\n\n1 1 1 2500 1 2 3\n2 1 1 2500 4 5 6\n"},
                  {"\"ellipsoid\"", "dump"});
-  expect_refusal({"a.data", head + "Atoms # atomic\n\n1 1 1 2 3\n2 1 4 5 6\n"}, {"--diameter"});
+  expect_refusal({"a.data", head + "Atoms # atomic\n\n1 1 1 2 3\n2 1 4 5 6\n"}, {"‹diameter›"});
   std::string tilted = head;
   tilted.insert(tilted.find("\n\nMasses"), "\n0.5 0 0 xy xz yz");
   expect_refusal({"a.data", tilted + "Atoms # sphere\n\n"}, {"a.data:9", "triclinic"});
@@ -208,7 +208,7 @@ TEST(ImportExtxyz, LatticeAndProperties) {
   expect_refusal({"a.xyz", "1\nLattice=\"9 0 0 1 9 0 0 0 9\"\nX 1 2 3\n", {.radius = 1, .unit = Unit::mm}},
                  {"a.xyz:2", "triclinic"});
   expect_refusal({"a.xyz", first + second.substr(0, second.size() - 22), {.unit = Unit::mm}},
-                 {"frame 2", "--frame 1"});
+                 {"frame 2", "‹frame=1›"});
   expect_refusal({"a.xyz", "99999999999999\n\nX 1 2 3\n", {.radius = 1, .unit = Unit::mm}},
                  {"1 of 99999999999999"});
 }
@@ -218,7 +218,7 @@ TEST(ImportYade, EveryFormatLine) {
   expect_two(packing_of({"a.txt", "#format x_y_z_r\n1\t2\t3\t0.5\n4\t5\t6\t0.25\n", mm}));
   expect_two(packing_of({"a.txt", "#format id_x_y_z_r_matId\n0 1 2 3 0.5 0\n1 4 5 6 0.25 0\n", mm}));
   EXPECT_EQ(packing_of({"a.txt", "#format x_y_r\n1 2 0.5\n", mm}).spheres.dimension(), 2);
-  expect_refusal({"a.txt", "#format x_y_z\n1 2 3\n", mm}, {"--diameter"});
+  expect_refusal({"a.txt", "#format x_y_z\n1 2 3\n", mm}, {"‹diameter›"});
   expect_refusal({"a.txt", "#format jointedPM\n1 2 3\n", mm}, {"a.txt:2", "jointedPM"});
 }
 
@@ -276,7 +276,7 @@ TEST(ImportNpy, EveryKindOfNumbersAndOrders) {
   expect_refusal({"a.npy", npy("|O", "False", "(2, 4)", rows), mm}, {"astype(float)"});
   expect_refusal({"a.npy", npy("<f8", "False", "(8,)", rows), mm}, {"one dimension"});
   expect_refusal({"a.npy", npy("<f8", "False", "(0, 4)", std::vector<double>{}), mm}, {"no spheres"});
-  expect_refusal({"a.npy", npy("<f8", "False", "(2, 3)", centers), mm}, {"--diameter or --radius"});
+  expect_refusal({"a.npy", npy("<f8", "False", "(2, 3)", centers), mm}, {"‹diameter› or ‹radius›"});
   expect_refusal({"a.npy", npy("<f8", "False", "(2, 4)", std::vector<double>{1, 2, 3, -1, 4, 5, 6, 1}), mm},
                  {"row 1", "radius -1"});
   expect_refusal({"a.npy", std::string("\x93NUMPY\x01\0", 8), mm}, {"a.npy", "cut off"});

@@ -115,7 +115,7 @@ TEST(ImportMistakes, AUnitHasManySpellingsAndOneMeaning) {
   EXPECT_EQ(imported({"a.xyz", "1\nunit=" + letter + "\nX 1 2 3\n", {.radius = 1}}).packing.scene.unit,
             Unit::um);
   expect_refusal({"a.csv", "x [mm],y [mm],z [mm],r\n" + row},
-                 {"a.csv:1", "\"mm\" of x and no unit of r", "--unit"});
+                 {"a.csv:1", "\"mm\" of x and no unit of r", "‹unit›"});
   expect_refusal({"a.csv", "x [mm],y [mm],z [mm],r [um]\n" + row}, {"\"mm\" of x and \"um\" of r"});
 }
 
@@ -123,10 +123,10 @@ TEST(ImportMistakes, AxesAreNamedOnce) {
   const std::string table = "x,y,z,r\n1,2,3,0.5\n";
   for (const char* word : {"xx", "xyx", "zz"})
     expect_refusal({"a.csv", table, {.unit = Unit::mm, .box = {9, 9, 9}, .periodic = word}},
-                   {"--periodic", "twice"});
+                   {"‹periodic›", "twice"});
   const std::string discs = "x,y,r\n1,2,0.5\n3,4,0.5\n";
   expect_refusal({"a.csv", discs, {.unit = Unit::mm, .dimension = 3}},
-                 {"a.csv", "2 coordinates", "--dimension"});
+                 {"a.csv", "2 coordinates", "‹dimension›"});
   EXPECT_EQ(imported({"a.csv", discs, {.unit = Unit::mm, .dimension = 2}}).packing.spheres.dimension(), 2);
   EXPECT_EQ(imported({"a.csv", table, {.unit = Unit::mm, .dimension = 3}}).packing.spheres.dimension(), 3);
 }
@@ -193,7 +193,7 @@ TEST(ImportMistakes, ProseSaysNeitherUnitNorWalls) {
     const Packing packing = imported(data_file(prose, "", mm)).packing;
     EXPECT_FALSE(has_walls(packing.domain)) << prose;
     EXPECT_EQ(packing.scene.unit, Unit::mm) << prose;
-    expect_refusal(data_file(prose), {"a.data", "--unit"});
+    expect_refusal(data_file(prose), {"a.data", "‹unit=mm›"});
   }
   // What sounds like a unit and is not taken for one is named beside the format.
   for (const auto& [title, said] :
@@ -217,12 +217,12 @@ TEST(ImportMistakes, ProseSaysNeitherUnitNorWalls) {
               walls.domain.index());
   expect_refusal(data_file("bed; boundary p p q"), {"a.data:1", "\"q\""});
   expect_refusal(data_file("bed; boundary p p"), {"a.data:1", "three axes"});
-  expect_refusal(data_file("bed; lengths in angstrom", "", mm), {"a.data:1", "\"angstrom\"", "--unit"});
+  expect_refusal(data_file("bed; lengths in angstrom", "", mm), {"a.data:1", "\"angstrom\"", "‹unit›"});
   expect_refusal(data_file("lengths in 1000 mm", "", mm), {"a.data:1", "\"1000 mm\""});
   expect_refusal(data_file("bed, units = ls", "", mm), {"a.data:1", "\"ls\""});
   expect_refusal(data_file("lengths in mm, units = si"), {"a.data:1", "mm"});
   const std::string rows = "1 2 3 0.5\n4 5 6 0.25\n";
-  expect_refusal({"a", "#format x_y_z_r\n# bond lengths in nm\n" + rows}, {"--unit"});
+  expect_refusal({"a", "#format x_y_z_r\n# bond lengths in nm\n" + rows}, {"‹unit=mm›"});
   expect_refusal({"a", "#format x_y_z_r\n# lengths in mm\n# lengths in cm\n" + rows}, {"a:3", "mm"});
   EXPECT_EQ(imported({"a", "#format x_y_z_r\n# bed; lengths in mm\n" + rows}).packing.scene.unit, Unit::mm);
 }
@@ -304,7 +304,7 @@ TEST(ImportMistakes, NoRowOfATableIsTakenForARemark) {
             std::string::npos)
       << some.notes.front().text;
   expect_refusal({"a.csv", "# unit: mm\n" + head + "# unit: cm\n4,5,6,0.25\n"}, {"a.csv:4", "cm", "mm"});
-  expect_refusal({"a.csv", head + "# unit: cm\n4,5,6,0.25\n", mm}, {"in cm", "--unit"});
+  expect_refusal({"a.csv", head + "# unit: cm\n4,5,6,0.25\n", mm}, {"in cm", "‹unit›"});
   EXPECT_EQ(imported({"a.csv", head + "# unit: cm\n4,5,6,0.25\n"}).packing.scene.unit, Unit::cm);
 }
 
@@ -325,12 +325,12 @@ TEST(ImportMistakes, AnOpenQuotationMarkIsRefused) {
   expect_refusal(xyz(lattice + "pbc='T T T"), {"a.xyz:2", "not closed"});
   for (const char* pbc : {"maybe", "\"maybe maybe maybe\"", "\"T T yes\"", "\"T T\"", "\"2 0 0\""})
     expect_refusal(xyz(lattice + "pbc=" + pbc), {"a.xyz:2", "pbc"});
-  expect_refusal(xyz("pbc=\"T T T\""), {"a.xyz:2", "--box"});
+  expect_refusal(xyz("pbc=\"T T T\""), {"a.xyz:2", "‹box›"});
   EXPECT_TRUE(has_walls(imported(xyz("pbc=\"F F F\"")).packing.domain));
   EXPECT_EQ(std::get<Box>(imported(xyz(lattice + "pbc=\"true False 1\"")).packing.domain).periodic,
             (std::vector<bool>{true, false, true}));
   expect_refusal(xyz(lattice + "Lattice=\"8 0 0 0 9 0 0 0 9\""), {"a.xyz:2", "twice"});
-  expect_refusal(xyz(lattice + "unit=parsec"), {"a.xyz:2", "\"parsec\"", "--unit"});
+  expect_refusal(xyz(lattice + "unit=parsec"), {"a.xyz:2", "\"parsec\"", "‹unit›"});
   expect_refusal({"a.xyz", "1\nProperties=species:S:1:pos:R:3\nX 1 2 3 4\n", {.radius = 1, .unit = Unit::mm}},
                  {"a.xyz:3", "5 columns"});
 }

@@ -94,7 +94,7 @@ TEST(ImportVtk, LegacyText) {
                        "9 3\nSCALARS radius float\nLOOKUP_TABLE default\n0.25 0.5\n"});
   const std::string own = head + points + "POINT_DATA 2\nSCALARS dp float\nLOOKUP_TABLE default\n1 0.5\n";
   expect_two({"a.vtk", own, {.columns = "x,y,z,d=dp", .unit = Unit::mm}});
-  expect_refusal({"a.vtk", own}, {"a.vtk", "\"dp\"", "--columns x,y,z,r=dp"});
+  expect_refusal({"a.vtk", own}, {"a.vtk", "\"dp\"", "‹columns=x,y,z,r=dp›"});
   const Packing equal = imported({"a.vtk", head + points, {.diameter = 1, .unit = Unit::mm}}).packing;
   EXPECT_EQ(equal.spheres.r, (std::vector<double>{0.5, 0.5}));
 }
@@ -247,7 +247,7 @@ TEST(ImportVtk, XmlOfOtherPrograms) {
 
 TEST(ImportVtk, IsRefusedInOneLine) {
   const std::string two = piece("NumberOfPoints='2'", "1 2 3 4 5 6", ascii("radius", "0.5 0.25"));
-  expect_refusal({"a.vtu", vtu(two), {}}, {"--unit"});
+  expect_refusal({"a.vtu", vtu(two), {}}, {"‹unit=mm›"});
   expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ascii("radius", "0.5 0")))},
                  {"point 1", "radius 0"});
   expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 nan", ascii("radius", "0.5 1")))},
@@ -258,10 +258,10 @@ TEST(ImportVtk, IsRefusedInOneLine) {
                  {"\"x\""});
   expect_refusal(
       {"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ascii("radius", "1 1") + ascii("d", "2 2")))},
-      {"two may be", "--columns"});
+      {"two may be", "‹columns="});
   expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ascii("v", "1 1 1 1 1 1", 3)))},
-                 {"v:0", "--columns"});
-  expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ""))}, {"no sizes", "--radius"});
+                 {"v:0", "‹columns="});
+  expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='2'", "1 2 3 4 5 6", ""))}, {"no sizes", "‹radius›"});
   expect_refusal({"a.vtu", vtu("")}, {"no points"});
   expect_refusal({"a.vtu", vtu(two + piece("NumberOfPoints='1'", "7 8 9", ""))}, {"array \"radius\""});
   expect_refusal({"a.vtu", vtu(piece("NumberOfPoints='9999999999'", "1", ascii("radius", "1")))}, {"a.vtu:"});

@@ -79,5 +79,16 @@ TEST(PlainText, LeavesOutTheMiddleOfWhatIsLong) {
     EXPECT_LE(plain_text("ääääääääääääääääääääääää", most).size(), most);
 }
 
+TEST(WithOptions, NamesThemAsTheFrontEndDoes) {
+  const auto loud = [](std::string_view name, std::string_view value) {
+    return "<" + std::string(name) + "|" + std::string(value) + ">";
+  };
+  EXPECT_EQ(with_options("a.csv:1: give ‹with_mesh›, such as ‹columns=x=3,y=4› ", loud),
+            "a.csv:1: give <with_mesh|>, such as <columns|x=3,y=4> ");
+  for (const char* text : {"", "no option", "‹", "›", "‹›", "‹=1›", "‹a", "a‹b c›d", "‹ÄÖ›"})
+    EXPECT_EQ(with_options(text, loud), text);
+  EXPECT_EQ(with_options("‹‹box››", loud), "‹<box|>›");
+}
+
 }  // namespace text_test
 }  // namespace bernal

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,17 @@ std::string with_escaped_controls(std::string_view text);
 
 /// Without white space at the ends.
 std::string_view trimmed(std::string_view text);
+
+/// What a front end calls an option, with its value where a message gives an example: "--unit mm" on a
+/// command line, "unit='mm'" in Python. The value is empty where there is none.
+using OptionInWords = std::function<std::string(std::string_view name, std::string_view value)>;
+
+/// The message with every option that it names as the front end calls it.
+///
+/// Messages of the library (errors, notes, what runs tell, words of `import_formats`) name an option between
+/// ‹ and ›, by the name of its member or parameter, with a value behind the first "=": "give it, such as
+/// ‹unit=mm›". Where there is no name between such marks they stay as they are.
+std::string with_options(std::string_view message, const OptionInWords& in_words);
 
 /// 28312 as "28,312".
 std::string grouped(std::uint64_t n);

@@ -1,5 +1,7 @@
 #pragma once
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,6 +10,7 @@
 
 #include "bernal/core/unit.hpp"
 #include "bernal/core/vector.hpp"
+#include "bernal/geometry/mesh.hpp"
 
 namespace bernal {
 
@@ -49,6 +52,15 @@ struct MeshFile {
   /// Of the file and then of every obstacle, in hexadecimal, as they were when the scene was run: files whose
   /// bytes are others are refused.
   std::vector<std::string> sha256 = {};
+  /// Surfaces that stand in no file, by what `file` and `obstacles` call them, such as "part.off": they are
+  /// taken as an OFF file that holds them, and a result has that file beside it.
+  std::map<std::filesystem::path, std::shared_ptr<const PolygonSurface>> surfaces = {};
+
+  /// Null where the name is that of a file.
+  const PolygonSurface* surface_called(const std::filesystem::path& name) const {
+    const auto found = surfaces.find(name);
+    return found == surfaces.end() ? nullptr : found->second.get();
+  }
 };
 
 }  // namespace bernal

@@ -15,7 +15,7 @@ namespace bernal {
 struct ImportFormat {
   std::string name;                  ///< "lammps"
   std::string what;                  ///< the program, and what the file holds
-  std::string unit;                  ///< where the unit of its lengths comes from: "cm", "--unit"
+  std::string unit;                  ///< of its lengths: "cm", or its source, "‹unit›"; see `with_options`
   std::vector<std::string> options;  ///< options of this format alone or of some: "columns", "frame"
 };
 /// All formats, in the order in which they are tried on a file.
@@ -27,15 +27,15 @@ struct ImportOptions {
   /// Columns of the centre and the size: "x,y,z,d" in the order of the columns, `-` for one to skip, or
   /// "x=3,y=4,z=5,d=rad" by number (from 1) or by name; r for a radius, d for a diameter.
   std::string columns = {};
-  std::optional<double> diameter = {}, radius = {};     ///< of all spheres, if the file has no sizes
-  std::optional<std::filesystem::path> radii = {};      ///< a .npy file with one radius for each centre
-  std::optional<Unit> unit = {};                        ///< if the file does not say it
-  std::vector<double> box = {};                         ///< edges of the box [0, a)
-  std::string periodic = {};                            ///< periodic axes: "xy", "none"
-  std::optional<std::filesystem::path> container = {};  ///< a scene with the container
-  std::vector<double> shift = {};                       ///< added to every centre
-  std::optional<int> frame = {};                        ///< of a trajectory, from 1; by default the last
-  std::optional<int> dimension = {};                    ///< 2: discs, whose third coordinates are all equal
+  std::optional<double> diameter = {}, radius = {};  ///< of all spheres, if the file has no sizes
+  std::optional<std::filesystem::path> radii = {};   ///< a .npy file with one radius for each centre
+  std::optional<Unit> unit = {};                     ///< if the file does not say it
+  std::vector<double> box = {};                      ///< edges of the box [0, a)
+  std::string periodic = {};                         ///< periodic axes: "xy", "none"
+  std::optional<Scene> container = {};               ///< a scene with the container
+  std::vector<double> shift = {};                    ///< added to every centre
+  std::optional<int> frame = {};                     ///< of a trajectory, from 1; by default the last
+  std::optional<int> dimension = {};                 ///< 2: discs, whose third coordinates are all equal
 };
 
 /// What the reader found in a file: "domain" and "a periodic box 3 x 4 x 5.3 mm, as the file says".
@@ -65,9 +65,15 @@ ImportedPacking import_packing(const std::filesystem::path& file, const ImportOp
                                const Monitor& monitor = {});
 inline constexpr double most_filled = 20;
 
+/// The same of spheres that a program has already, in the unit that `options` says. Throws
+/// Error{bad_argument} for columns of different lengths and for numbers that are no lengths.
+ImportedPacking import_spheres(Spheres<dynamic> spheres, const ImportOptions& options,
+                               const Monitor& monitor = {});
+
 /// Writes an imported packing like `write_packing`; its scene names the written spheres as its start, so that
-/// `bernal pack` continues from them. Throws as that does, if `file`, the source, would be overwritten, and
-/// Cancelled, with nothing written, once the monitor says stop.
+/// `bernal pack` continues from them. `file` is the source, empty for spheres that came from no file. Throws
+/// as that does, if `file` would be overwritten, and Cancelled, with nothing written, once the monitor says
+/// stop.
 WrittenPacking write_imported(Packing packing, const std::filesystem::path& file,
                               const std::filesystem::path& folder, WriteOptions options = {});
 /// Throws what `write_imported` would throw for the folder; call it before reading a large file.

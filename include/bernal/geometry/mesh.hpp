@@ -18,6 +18,13 @@ struct ExactCorners {
 /// The three vertices of a triangle, by index.
 using FaceCorners = std::array<std::uint32_t, 3>;
 
+/// A surface as it comes from elsewhere: faces, each as the numbers of its three or more corners among the
+/// vertices. It need not be closed, oriented or welded.
+struct PolygonSurface {
+  std::vector<Vector<3>> vertices;
+  std::vector<std::vector<std::uint32_t>> faces;
+};
+
 /// A closed triangle mesh with outward orientation that does not intersect itself.
 struct Mesh {
   std::vector<Vector<3>> vertices;

@@ -25,6 +25,10 @@ void complete(Scene& scene);
 /// Precondition of both: the scene is complete.
 std::string scene_as_toml(const Scene&, const std::filesystem::path& folder = {});
 
+/// Writes that as a file, with the names of other files relative to its folder. What stands in no file, see
+/// `MeshFile::surfaces` and `Start::packing`, is written beside it. Throws Error{cannot_write}.
+void write_scene(const Scene&, const std::filesystem::path& file);
+
 /// Only its stages, every default explicit: the protocol, ready to be pasted into another scene.
 std::string stages_as_toml(const Scene&);
 

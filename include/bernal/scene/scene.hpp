@@ -2,6 +2,7 @@
 #include <any>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,8 @@
 #include "bernal/voxels/voxels.hpp"
 
 namespace bernal {
+
+struct Packing;
 
 /// A box that repeats itself along every axis but those with walls. By `size` or `edge`; with neither, the
 /// packing decides how large it is.
@@ -101,6 +104,9 @@ struct Start {
   std::vector<double> box = {};
   /// Of the file, at most one, in hexadecimal, as it was when the scene was run: other bytes are refused.
   std::vector<std::string> sha256 = {};
+  /// The packing that is meant, where it stands in no file: `file` is what it is called, such as "first.npy",
+  /// and a result has that file beside it.
+  std::shared_ptr<const Packing> packing = {};
 };
 
 /// One more file of a result, as another program reads it: `scene.outputs = {{.format = "lammps"}}`. What its

@@ -1,8 +1,10 @@
 #include "cad/read/read_soup.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
@@ -76,17 +78,8 @@ ReadAttempt read_by_extension(const std::filesystem::path& file, double deflecti
   return read_with_opencascade(file, deflection / (has_unit ? millimetre : metres));
 }
 
-}  // namespace
-
-ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres) {
-  const FileKind kind = kind_of_file(file);
-  if (kind == FileKind::missing) refuse(file, "no such file");
-  if (kind == FileKind::folder) refuse(file, "is a folder, not a file");
-  if (kind == FileKind::other) refuse(file, "is a pipe or a device, not a regular file");
-  std::error_code error;
-  if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
-  if (const std::string other = why_no_mesh(file); !other.empty()) refuse(file, other);
-  ReadAttempt read = read_by_extension(file, deflection, metres > 0 ? metres : 1);
+/// What was read, once it is known to be a surface.
+ReadAttempt sound(ReadAttempt read, const std::filesystem::path& file) {
   if (!read.ok()) refuse_unread(file, read.failure);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");
   if (const double farthest = largest_coordinate(read.soup); !(farthest <= most_coordinate))
@@ -99,6 +92,29 @@ ReadAttempt read_soup(const std::filesystem::path& file, double deflection, doub
                              most_corners_of_face));
   make_plain(read);
   return read;
+}
+
+}  // namespace
+
+ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres) {
+  const FileKind kind = kind_of_file(file);
+  if (kind == FileKind::missing) refuse(file, "no such file");
+  if (kind == FileKind::folder) refuse(file, "is a folder, not a file");
+  if (kind == FileKind::other) refuse(file, "is a pipe or a device, not a regular file");
+  std::error_code error;
+  if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
+  if (const std::string other = why_no_mesh(file); !other.empty()) refuse(file, other);
+  return sound(read_by_extension(file, deflection, metres > 0 ? metres : 1), file);
+}
+
+ReadAttempt read_surface(const PolygonSurface& surface, const std::filesystem::path& name) {
+  for (const Vector<3>& v : surface.vertices)
+    if (!v.allFinite()) refuse(name, "a coordinate is not finite");
+  for (const auto& face : surface.faces)
+    if (face.size() < 3 || std::ranges::max(face) >= surface.vertices.size())
+      refuse(name, fmt::format("a face has three or more of the vertices 0 to {}, not [{}]",
+                               std::ptrdiff_t(surface.vertices.size()) - 1, fmt::join(face, ", ")));
+  return sound({.soup = {surface.vertices, surface.faces}, .reader = "given, in double precision"}, name);
 }
 
 }  // namespace bernal::cad

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 
+#include "bernal/geometry/mesh.hpp"
 #include "cad/read/polygon_soup.hpp"
 
 namespace bernal::cad {
@@ -10,5 +11,8 @@ namespace bernal::cad {
 /// The attempt succeeded. Throws Error{bad_mesh} if the file is missing, cannot be parsed, has no faces or
 /// has coordinates that are not finite.
 ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres);
+
+/// The same for a surface that stands in no file; `name` is what errors call it.
+ReadAttempt read_surface(const PolygonSurface& surface, const std::filesystem::path& name);
 
 }  // namespace bernal::cad

@@ -26,7 +26,7 @@ def table_of(name: str, of: str) -> dict[str, Any]:
 
 
 def otherwise(key: dict[str, Any]) -> str:
-    """What goes for the key if it is not given, for people; "" where that is nothing."""
+    """The default of a key in words; "" if it has none."""
     return "" if key["default"] is None else f", default {_toml.text_of(key['default'])}"
 
 
@@ -41,8 +41,7 @@ def described(keys: list[dict[str, Any]]) -> str:
 
 
 def positional(table: dict[str, Any]) -> list[str]:
-    """The keys that may be given without their names: those that a table needs, in their order; of a choice the first
-    set of them."""
+    """The keys that may be given by position: the required ones in their order, and of a choice its first set."""
     firsts = {name for choice in table["choices"] if [] not in choice for name in choice[0]}
     others = {name for choice in table["choices"] for names in choice[1:] for name in names if name not in choice[0]}
     return [
@@ -53,7 +52,7 @@ def positional(table: dict[str, Any]) -> list[str]:
 
 
 def choice_in_words(choice: list[list[str]], table: dict[str, Any]) -> str:
-    """Which keys go together, and whether any need be given."""
+    """One sentence: which keys to give together, and whether any are needed."""
     defaults = {key["name"]: key["default"] for key in table["keys"]}
     none = any(all(defaults[name] is not None for name in names) for names in choice)
     sets = [" and ".join(names) for names in choice if names]
@@ -81,8 +80,8 @@ def names_files(key: dict[str, Any]) -> bool:
 
 
 def taken(key: dict[str, Any], value: Any) -> Any:
-    """The value of a key as a scene has it. Names of files go on meaning what they mean here and now."""
-    value = _toml.plain(_surfaces.files_of(value) if names_files(key) else value)
+    """The value of a key as a scene has it. Names of files become absolute."""
+    value = _toml.plain(_surfaces.named(value) if names_files(key) else value)
     if key["type"] == "integer" and isinstance(value, float) and value.is_integer():
         value = int(value)
     if isinstance(value, int) and abs(value) >= 2**63:
@@ -91,7 +90,7 @@ def taken(key: dict[str, Any], value: Any) -> Any:
 
 
 class Said:
-    """What a scene says in one of its tables: plain data that does not change. See `replace`."""
+    """One table of a scene as immutable data, see `replace`."""
 
     _table: ClassVar[dict[str, Any]]
     _selector: ClassVar[str]
@@ -164,7 +163,7 @@ class Said:
 
 
 def _fixed(value: Any) -> Any:
-    """What has the same hash where values are equal: 1 is 1.0."""
+    """A value to hash, the same where values are equal."""
     return tuple(map(_fixed, value)) if isinstance(value, list) else value
 
 
@@ -180,7 +179,7 @@ class Sizes(Said):
 
 
 class Stage(Said):
-    """An act of the protocol by which a scene is packed."""
+    """A stage of the protocol that packs a scene."""
 
 
 class Engine(Said):
@@ -255,7 +254,7 @@ Output.__doc__ = f"{Output.__doc__}\n\nFormats, each with what it can be told:\n
 
 
 def made(selector: str, name: str, said: dict[str, Any]) -> Said:
-    """What a file says: the class that the word chooses."""
+    """An instance of the class that the table `name` has, with what a scene says in it."""
     if selector == "format":
         return Output(name, **said)
     kind = next(each for each in CLASSES.values() if each._selector == selector and each._table["name"] == name)

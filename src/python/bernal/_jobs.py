@@ -1,4 +1,4 @@
-"""Waiting for what takes time: it runs in a thread of its own, so that interrupts are heard at once."""
+"""Waiting for jobs, which run in threads of their own, so that Python reacts to interrupts at once."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ from ._progress import Progress, display_of
 
 
 class Stopped(UserWarning):
-    """A run was stopped by Ctrl-C, and what it had is what `pack` returned.
+    """Ctrl-C stopped a run, and `pack` returned the spheres that it had placed.
 
-    `warnings.simplefilter("error", bernal.Stopped)` makes an exception of it, which ends loops over runs.
+    `warnings.simplefilter("error", bernal.Stopped)` turns it into an exception, which ends a loop over runs.
     """
 
 
 def finish(job: Any, progress: Progress, leaves_something: bool = False) -> Any:
-    """The job's result. Where it `leaves_something`, the first Ctrl-C stops it at its next safe point, and what
-    it has by then is the result; the second raises KeyboardInterrupt, as every one does elsewhere. The thread
-    then ends by itself. A KeyboardInterrupt that `progress` raises is one by Ctrl-C, which arrives there, too. Where
-    the program has ended in the main thread meanwhile, others end here."""
+    """Waits for a job and returns its result.
+
+    If the job `leaves_something`, the first Ctrl-C stops it at its next safe point, and the result is what it has by
+    then; the second raises KeyboardInterrupt. For other jobs the first one does. The job's thread ends by itself. A
+    KeyboardInterrupt from `progress` counts as Ctrl-C, which may arrive there. If the main thread has ended the
+    program meanwhile, other threads end here.
+    """
     display = display_of(progress)
     stopped = False
     try:
@@ -43,12 +46,12 @@ def finish(job: Any, progress: Progress, leaves_something: bool = False) -> Any:
     finally:
         display.clear()
     if _core.is_ending_elsewhere():
-        raise SystemExit  # which ends a thread without a word
+        raise SystemExit  # ends the thread silently
     return job.result()
 
 
 def _end() -> None:
-    """Threads that were left to themselves use what is about to be taken down."""
+    """Ends the threads of jobs that nobody waits for, before the interpreter destroys what they use."""
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     _core.stop_all_jobs()

@@ -1,4 +1,4 @@
-"""A packing: spheres in their domain, with what is known of how they came there."""
+"""A packing: spheres in a domain, and how the run went that placed them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 
 class Picture:
-    """An SVG picture, which notebooks show; as text it is the SVG itself."""
+    """An SVG picture, which notebooks show; `str` gives the SVG."""
 
     def __init__(self, svg: str) -> None:
         self.svg = svg
@@ -41,13 +41,13 @@ class Picture:
         path.write_text(self.svg, "utf-8")
         return path
 
-    def _repr_html_(self) -> str:  # as an image: the names of its gradients are its own
+    def _repr_html_(self) -> str:  # an image, so that names of gradients do not clash in a page
         data = base64.b64encode(self.svg.encode()).decode()
         return f'<img alt="" style="max-width:100%;max-height:32em" src="data:image/svg+xml;base64,{data}">'
 
 
 class View:
-    """A page with a view of a packing by WebGL, which notebooks show in a frame. It asks for nothing else."""
+    """An HTML page with an interactive view by WebGL, which notebooks show in a frame. It loads nothing else."""
 
     def __init__(self, page: str, height: int) -> None:
         self.page, self.height = page, height
@@ -71,8 +71,9 @@ class View:
 class Packing:
     """Spheres that were packed, read or imported; N of them in D dimensions, lengths in the scene's `unit`.
 
-    `x`, `y`, `z`, `radii` and `columns` are read-only arrays that look at the library's own memory, without a copy,
-    and keep it alive by themselves.
+    `x`, `y`, `z`, `radii` and `columns` are read-only arrays over the library's memory, without a copy, and keep it
+    alive. Packings pickle with all that they hold, for other processes of this version of
+    bernal; files keep them for longer, see `write`.
     """
 
     _core: Any
@@ -87,9 +88,9 @@ class Packing:
         return packing
 
     notes: Record
-    """Of an imported packing, what was understood of its file."""
+    """Of an imported packing: format, unit, domain and what else was read from its file."""
     _given_scene: Scene | None
-    _imported_from: str | None
+    _imported_from: str | None  # the file; "" of arrays
 
     # The spheres
 
@@ -115,24 +116,24 @@ class Packing:
 
     @property
     def x(self) -> Array:
-        """The first coordinates, shape (N,). No copy; read-only."""
+        """The x coordinates, shape (N,). No copy; read-only."""
         return self._axis(0, "x")
 
     @property
     def y(self) -> Array:
-        """The second ones, from two dimensions on, shape (N,). No copy; read-only."""
+        """The y coordinates, shape (N,), in two or more dimensions. No copy; read-only."""
         return self._axis(1, "y")
 
     @property
     def z(self) -> Array:
-        """The third ones, from three dimensions on, shape (N,). No copy; read-only."""
+        """The z coordinates, shape (N,), in three or more dimensions. No copy; read-only."""
         return self._axis(2, "z")
 
     @cached_property
     def centers(self) -> Array:
-        """Shape (N, D). A copy, made when it is first asked for and then kept; read-only."""
+        """Shape (N, D). A copy, made at the first access and then kept; read-only."""
         centers = np.stack(self.columns, axis=1)
-        return np.ndarray(centers.shape, float, centers.tobytes())  # which nobody can make writable again
+        return np.ndarray(centers.shape, float, centers.tobytes())  # over bytes, so that it stays read-only
 
     @property
     def diameters(self) -> Array:
@@ -146,19 +147,19 @@ class Packing:
 
     @property
     def scene(self) -> Scene:
-        """The problem that it is an answer to."""
+        """The scene that was packed."""
         if self._given_scene is None:
             self._given_scene = Scene._of(self._core.scene())
         return self._given_scene
 
     @property
     def unit(self) -> str:
-        """Of all lengths."""
+        """The unit of all lengths."""
         return self.scene.unit
 
     @property
     def dimension(self) -> int:
-        """D, of space."""
+        """The dimension D of space."""
         return int(self._core.dimension)
 
     @property
@@ -168,7 +169,7 @@ class Packing:
 
     @property
     def volume(self) -> float:
-        """Of the domain, or of one period, in unit^D."""
+        """The volume of the domain, or of one period, in unit^D."""
         return float(self._core.volume)
 
     @property
@@ -181,12 +182,12 @@ class Packing:
 
     @property
     def packing_fraction(self) -> float:
-        """Volume of the spheres over that of the domain."""
+        """The volume of the spheres over that of the domain."""
         return float(self._core.packing_fraction)
 
     @property
     def expected_packing_fraction(self) -> float:
-        """By the plan, before the run; 0 or NaN where nothing was run."""
+        """What the plan expected before the run; 0 or NaN if there was no run."""
         return float(self._core.expected_packing_fraction)
 
     @property
@@ -196,7 +197,7 @@ class Packing:
 
     @property
     def reason(self) -> str:
-        """One sentence behind the outcome."""
+        """One sentence that explains the outcome."""
         return str(self._core.reason)
 
     @property
@@ -206,22 +207,22 @@ class Packing:
 
     @property
     def seconds(self) -> float:
-        """That the run took."""
+        """The seconds that the run took."""
         return float(self._core.seconds)
 
     @property
     def size_scale(self) -> float:
-        """All sizes are so many times those that were drawn: other than 1 only where `polish` let them grow."""
+        """The sizes over those that were drawn: other than 1 only if `polish` let the spheres grow."""
         return float(self._core.size_scale)
 
     @property
     def hash(self) -> str:
-        """Of the bits of all spheres in their order, 16 hexadecimal digits."""
+        """A hash of the bits of all spheres in their order, 16 hexadecimal digits."""
         return str(self._core.hash())
 
     def coordination(self, gaps: Iterable[float] = (0.002,)) -> Array:
-        """Mean number of contacts of a sphere, those with walls among them, where spheres touch below each of these
-        gaps over the sum of their radii, from 0 to 1. Cost: that of the largest gap."""
+        """The mean number of contacts of a sphere, including those with walls, for each of several gaps: spheres touch if
+        the gap over the sum of their radii is below it. Gaps are from 0 to 1. Cost: that of the largest gap."""
         asked = [_toml.number(gap, "gap") for gap in gaps]
         for gap in asked:
             if not 0 <= gap <= 1:
@@ -230,8 +231,8 @@ class Packing:
 
     @property
     def history(self) -> list[Record]:
-        """The state after each stage or round of one: stage, spheres, packing_fraction, potential (mean height),
-        max_overlap (ratio), seconds."""
+        """The state after each stage, or each round of a stage: stage, spheres, packing_fraction, potential (mean
+        height), max_overlap (ratio), seconds."""
         return [Record(each) for each in self._core.history()]
 
     @property
@@ -245,23 +246,22 @@ class Packing:
         self,
         folder: str | os.PathLike[str],
         *,
-        with_mesh: bool | None = None,
+        with_mesh: bool = False,
         list: int = 0,
         progress: Progress = None,
     ) -> Written:
-        """Writes what `bernal pack` does into a folder: spheres, scene, report, pictures, the scene's outputs; proven
-        from the file that was written. All or nothing.
+        """Writes the files of `bernal pack` into a folder: spheres, scene, report, pictures and the scene's outputs. The
+        certificate is of the file that was written. Either all files are written, or none.
 
         with_mesh : copies the CAD files, and the file of a start, beside the spheres, so that the folder stands for
-            itself; if None where they come from arrays.
-        list : so many overlapping pairs and protruding spheres are listed in the certificate, the worst.
+            itself. What stands in no file is always written there.
+        list : how many overlapping pairs and protruding spheres the certificate lists, the worst first.
         Returns files, certificate and notes. Raises WriteError.
         """
-        passing = bool(self._given_scene and self._given_scene._passing())
         job = _core.write(
             self._core,
             _surfaces.path(folder, "the folder"),
-            passing if with_mesh is None else bool(with_mesh),
+            bool(with_mesh),
             _toml.whole(list, "list"),
             self._imported_from,
         )
@@ -269,29 +269,27 @@ class Packing:
         proof = _records.record(_records.Certificate, certificate)
         return Written(files=[Path(file) for file in files], certificate=proof, notes=notes)
 
-    def _as_start(self) -> str:
-        """A folder that a scene can begin from."""
-        folder = os.path.join(_surfaces.folder(), f"start-{self.hash}")
-        if not os.path.isdir(folder):
-            self.write(folder, progress=False)
-        return folder
+    def _as_toml(self) -> str:
+        """What a scene calls it that starts from it."""
+        return f'"packing-{self.hash}.npy"'
 
     @property
     def picture(self) -> Picture:
-        """In two and three dimensions: what `packing.svg` shows, in others an empty picture."""
+        """The picture in `packing.svg`; empty unless there are two or three dimensions."""
         return Picture(self._core.picture())
 
     def view(self, height: int = 520) -> View:
-        """In two and three dimensions: the packing to turn, cut, colour and ask, in a notebook so many pixels high."""
+        """An interactive view, in two and three dimensions, in a notebook so many pixels high."""
         return View(self._core.view(), height)
 
     def section(self, plane: str | None = None) -> Picture:
-        """What a plane cuts of a packing of three dimensions, "z = 1.5" or "0.6 x + 0.8 z = 2"; if None that through
-        the middle. Circles are exact."""
+        """A section of a packing of three dimensions through a plane, "z = 1.5" or "0.6 x + 0.8 z = 2"; None is one
+        through the middle. The circles are exact."""
         return Picture(self._core.section(plane))
 
-    def __reduce__(self) -> str | tuple[Any, ...]:
-        raise TypeError("a packing cannot be pickled; write it to a folder, and read it again with bernal.read")
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = {"notes": self.notes, "_imported_from": self._imported_from}
+        return Packing._of, (self._core, self._given_scene), state
 
     def __copy__(self) -> Packing:
         return self  # it does not change

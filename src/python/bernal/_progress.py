@@ -1,4 +1,4 @@
-"""How far work has come, in a terminal, in a notebook, or for a function of the user's."""
+"""Progress in a terminal, in a notebook, or for a function of the user's."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from typing import Any, Union
 from . import _errors
 
 Progress = Union[bool, None, Callable[[str, Union[float, None], str], Any]]
-"""True: always shown; None: where somebody looks, a terminal or a notebook; False: not at all. A function is called
-with the activity ("relax"), the fraction that is done, None where nobody knows, and a detail in words."""
+"""True: always shown; None: in a terminal or a notebook; False: never. A function is called with the activity
+("relax"), the fraction that is done (None if unknown) and a detail in words."""
 
 SILENCE, BETWEEN_LINES = 2.0, 10.0  # seconds
 
@@ -33,7 +33,7 @@ class Silent:
 
 
 class Told(Silent):
-    """Tells a function what is new."""
+    """Calls a function when there is news."""
 
     def __init__(self, function: Callable[[str, float | None, str], Any]) -> None:
         self._function, self._last = function, ("", -1.0, "")
@@ -45,7 +45,7 @@ class Told(Silent):
 
 
 class Shown(Silent):
-    """What is shown once the work has taken two seconds, and then not too often."""
+    """Shows progress after the first two seconds, and then not too often."""
 
     between = 0.1
 
@@ -93,12 +93,12 @@ class Terminal(Shown):
         try:
             sys.stderr.write(text)
             sys.stderr.flush()
-        except (OSError, ValueError, AttributeError):  # closed, or none
-            pass  # a run is not lost because nobody reads what it says
+        except (OSError, ValueError, AttributeError):  # standard error is closed or missing
+            pass  # which is no reason to lose a run
 
 
 class Lines(Terminal):
-    """A line of standard error now and then, for files."""
+    """A line of standard error every ten seconds, for files."""
 
     between = BETWEEN_LINES
 
@@ -113,7 +113,7 @@ class Lines(Terminal):
 
 
 class _Cell:
-    """What a notebook shows: HTML, or the same in words."""
+    """An output of a notebook: HTML, or the same in words."""
 
     def __init__(self, page: str, words: str) -> None:
         self._page, self._words = page, words
@@ -126,7 +126,7 @@ class _Cell:
 
 
 class Notebook(Shown):
-    """A bar below the cell, which goes when the work is done."""
+    """A bar below the cell, removed at the end."""
 
     between = 0.25
 
@@ -162,7 +162,7 @@ class Notebook(Shown):
 
 
 def _notebook() -> Callable[..., Any] | None:
-    """IPython's display, where a notebook runs this."""
+    """IPython's display function, if a notebook runs this."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython and hasattr(ipython, "get_ipython") else None
     if shell is None or not hasattr(shell, "kernel"):
@@ -190,5 +190,5 @@ def display_of(progress: Progress) -> Silent:
 def _is_terminal(stream: Any) -> bool:
     try:
         return bool(stream.isatty())
-    except (AttributeError, ValueError, OSError):  # none, closed, or somebody's own that does not know
+    except (AttributeError, ValueError, OSError):  # no stream, a closed one, or one without isatty
         return False

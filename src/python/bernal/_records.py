@@ -1,4 +1,4 @@
-"""Answers: dictionaries whose keys are attributes, too."""
+"""Answers, which are dictionaries with their keys as attributes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from . import _errors
 
 
 class _Both(list[Any]):
-    """The list that stands under a key called like a method of dictionaries, and that method: `plan.items` is what a
-    scene runs, and `plan.items()` what makes json and pickle know a dictionary."""
+    """A list under a key that has the name of a method of dictionaries, and that method: `plan.items` is a list, and
+    json and pickle can call `plan.items()`."""
 
     _method: Any
 
@@ -24,7 +24,7 @@ class _Both(list[Any]):
 
 
 class Record(dict[str, Any]):
-    """An answer as a dictionary whose keys are attributes: `answer["phi"]` is `answer.phi`, whatever the key is."""
+    """A dictionary whose keys are attributes, too: `answer["phi"]` is `answer.phi`."""
 
     def __getattribute__(self, name: str) -> Any:
         found = super().__getattribute__(name)
@@ -59,7 +59,7 @@ _METHODS = frozenset(dir(dict))
 
 
 class Plan(Record):
-    """What a scene would run, and what that would cost: see `explain`. As text what `bernal explain` prints."""
+    """What a scene would run, and what that would cost, see `explain`. `str` gives what `bernal explain` prints."""
 
     words: str
 
@@ -71,7 +71,7 @@ class Plan(Record):
 
 
 class Certificate(Record):
-    """What was proven of a packing: see `verify`. True where it is certified."""
+    """The result of `verify`. True if the packing is certified."""
 
     def __bool__(self) -> bool:
         return bool(self["certified"])
@@ -81,29 +81,29 @@ class Certificate(Record):
 
 
 class Measurements(Record):
-    """What can be said of spheres in their domain: see `measure`."""
+    """The result of `measure`."""
 
 
 class Inspection(Record):
-    """What a CAD file is: see `inspect`. True where it can be a container."""
+    """The result of `inspect`. True if the CAD file can be a container."""
 
     def __bool__(self) -> bool:
         return bool(self["usable"])
 
 
 class Prediction(Record):
-    """How densely sizes pack by the rod model: see `predict` and `design`."""
+    """A packing fraction by the rod model, see `predict` and `design`. `float` gives phi."""
 
     def __float__(self) -> float:
         return float(self["phi"])
 
 
 class Written(Record):
-    """Files that were written: see `Packing.write` and `export`."""
+    """Files that were written, see `Packing.write` and `export`."""
 
 
 def record(kind: type[Record], answer: Any, arrays: bool = False) -> Any:
-    """Of JSON or of dictionaries; lists of numbers become arrays, if wanted, and what is null in them NaN."""
+    """A record of JSON or of dictionaries. With `arrays` lists of numbers become arrays, with NaN for null."""
     if isinstance(answer, str):
         answer = json.loads(answer)
     return kind({key: _inside(value, arrays) for key, value in answer.items()})

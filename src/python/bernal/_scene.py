@@ -1,10 +1,9 @@
-"""A packing problem as the user states it."""
+"""Scenes: packing problems."""
 
 from __future__ import annotations
 
 import inspect
 import os
-import shutil
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
@@ -13,7 +12,7 @@ from typing import Any
 from . import _classes, _core, _errors, _surfaces, _toml
 from ._classes import Container, Engine, Output, Said, Sizes, Stage
 
-# Keys that stand in tables of their own in a file and are keywords here; sizes and tables are parameters.
+# The keys of a scene that are keywords, by their table in a file. Sizes and other tables are parameters.
 _OWN = {table["name"]: [k for k in table["keys"] if k["name"] not in ("radius", "diameter")]
         for table in _classes.group("scene")["tables"]}  # fmt: skip
 _PARTS = ("container", "diameters", "radii", "engine", "stages", "outputs")
@@ -21,9 +20,9 @@ _KEYS = {key["name"]: key for keys in _OWN.values() for key in keys}
 
 
 class Scene:
-    """What is to be packed into what: a container, sizes of spheres, and what else a scene file may say.
+    """A packing problem: a container, sizes of spheres, and all else that a scene file may say.
 
-    A scene does not change, see `replace`. It is checked when it is made: what is wrong raises `InputError`.
+    A scene is immutable, see `replace`. The constructor checks it and raises `InputError`.
 
     Parameters
     ----------
@@ -32,9 +31,9 @@ class Scene:
     diameters, radii : length or Sizes
         exactly one of them, so that nobody has to guess: `diameters=2` or `diameters=Lognormal(2, 0.3)`.
     engine : Engine
-        another program that finds the places which the first stage begins with, such as `Lammps(ranks=4)`.
+        another program that places the spheres before the first stage, such as `Lammps(ranks=4)`.
     stages : Stage, or several
-        in their order; none: the one that suits any container, or any periodic box.
+        in their order; without any, the default for containers or for periodic boxes.
     outputs : Output or name of a format, or several
         files for other programs, which `Packing.write` writes beside the others.
     """
@@ -75,7 +74,9 @@ class Scene:
             **said,
         }
         self._file: Path | None = None
-        self._core = _core.scene(self._text(), "/" + _errors.MADE_HERE)
+        surfaces = {surface.name: surface.arrays for surface in _surfaces_of(container)}
+        packing = getattr(said.get("start"), "_core", None)
+        self._core = _core.scene(self._text(), "/" + _errors.MADE_HERE, surfaces, packing)
 
     @classmethod
     def read(cls, file: str | os.PathLike[str]) -> Scene:
@@ -85,10 +86,10 @@ class Scene:
 
     @classmethod
     def _of(cls, core: Any, file: Path | None = None) -> Scene:
-        """Of what the library has; as far as it stands in a file with what that says alone."""
+        """A scene of the library; of one from a file only with the keys that the file has."""
         scene = object.__new__(cls)
         scene._core, scene._file = core, file
-        whole = tomllib.loads(core.toml(""))
+        whole = _with_what_is_given(tomllib.loads(core.toml("")), core)
         scene._parts = _parts_of(tomllib.loads(file.read_text("utf-8-sig")) if file else whole, whole)
         return scene
 
@@ -111,66 +112,32 @@ class Scene:
 
     @property
     def toml(self) -> str:
-        """The scene as a file would have it, every default explicit."""
+        """The scene as TOML, with every default."""
         return str(self._core.toml(""))
 
     @property
     def file(self) -> Path | None:
-        """Where it was read from."""
+        """The file that it was read from, or None."""
         return self._file
 
     @property
     def unit(self) -> str:
-        """Of every length in it: "nm", "um", "mm", "cm", "m", "in" or "ft"."""
+        """The unit of all lengths: "nm", "um", "mm", "cm", "m", "in" or "ft"."""
         return str(self._core.unit)
 
     @property
     def dimension(self) -> int:
-        """Of space: 2 for discs."""
+        """The dimension of space, 2 for discs."""
         return int(self._core.dimension)
 
     def write(self, file: str | os.PathLike[str]) -> Path:
-        """Writes it as TOML. Surfaces that stand in no file of the user are copied beside it."""
+        """Writes it as TOML. What stands in no file, surfaces and a packing to start from, is written beside it."""
         path = Path(os.path.abspath(os.fspath(file)))
-        try:
-            copies = {passing: str(path.parent / Path(passing).name) for passing in self._passing()}
-            for passing, copy in copies.items():
-                if os.path.isdir(passing):
-                    shutil.copytree(passing, copy, dirs_exist_ok=True)
-                else:
-                    shutil.copyfile(passing, copy)
-            path.write_text(self._with_files(copies)._core.toml(str(path.parent)), "utf-8")
-        except OSError as error:
-            raise _errors.WriteError("cannot_write", f"cannot be written: {error.strerror}", str(path)) from error
+        _core.write_scene(self._core, path)
         return path
 
-    def _named_files(self) -> dict[str, Any]:
-        """What the container says of files, and the start."""
-        said = self._parts["container"]._said
-        named = {key["name"]: said[key["name"]] for key in self._parts["container"]._table["keys"]
-                 if _classes.names_files(key) and key["name"] in said}  # fmt: skip
-        return {**named, "start": self._parts.get("start")}
-
-    def _passing(self) -> list[str]:
-        """Its files that end with this process."""
-        files = [
-            file for value in self._named_files().values() for file in (value if isinstance(value, list) else [value])
-        ]
-        return [file for file in files if file is not None and _surfaces.is_passing(file)]
-
-    def _with_files(self, others: dict[str, str]) -> Scene:
-        """The same with these files in place of others."""
-        if not others:
-            return self
-        named = {
-            name: [others.get(each, each) for each in value] if isinstance(value, list) else others.get(value, value)
-            for name, value in self._named_files().items()
-        }
-        start = named.pop("start")
-        return self.replace(container=self._parts["container"].replace(**named), start=start)
-
     def replace(self, **keys: Any) -> Scene:
-        """The same with other values of some parameters; None takes one away."""
+        """A scene with other values of some parameters; None removes one."""
         return Scene(**{name: value for name, value in {**self._parts, **keys}.items() if value is not None})
 
     def __getattr__(self, name: str) -> Any:
@@ -215,6 +182,29 @@ def _again(parts: dict[str, Any]) -> Scene:
     return Scene(**{name: value for name, value in parts.items() if value is not None})
 
 
+def _surfaces_of(container: Container) -> list[_surfaces.Surface]:
+    """The surfaces from arrays among the container's files."""
+    values = [value for name, value in container._said.items() if _classes.names_files(container._key(name))]
+    files = [file for value in values for file in (value if isinstance(value, list) else [value])]
+    return [file for file in files if isinstance(file, _surfaces.Surface)]
+
+
+def _with_what_is_given(whole: dict[str, Any], core: Any) -> dict[str, Any]:
+    """The tables of a scene, with surfaces and the packing to start from in place of their names."""
+    given = {name: _surfaces.Surface(*arrays) for name, arrays in core.surfaces().items()}
+    container = whole["container"]
+    if given:
+        container["file"] = given.get(container["file"], container["file"])
+    if given and "obstacles" in container:
+        container["obstacles"] = [given.get(each, each) for each in container["obstacles"]]
+    start = core.start()
+    if start is not None:
+        from ._packing import Packing
+
+        whole["spheres"]["start"] = Packing._of(start)
+    return whole
+
+
 def _several(given: Any, kinds: Any, name: str) -> tuple[Any, ...]:
     all_of = (given,) if isinstance(given, kinds) else tuple(given)
     for each in all_of:
@@ -226,11 +216,12 @@ def _several(given: Any, kinds: Any, name: str) -> tuple[Any, ...]:
 
 
 def _parts_of(said: dict[str, Any], whole: dict[str, Any]) -> dict[str, Any]:
-    """What a file says, as the parameters of `Scene`; names of files, and what stands in them, as in the `whole`."""
+    """The parameters of `Scene` for what a file says. Names of files, and what was read from them, are taken from
+    `whole`, the tables of the scene that was read."""
     container = {**said["container"]}
     for key in _classes.table_of("container", container["kind"])["keys"]:
         if key["name"] in container and _classes.names_files(key):
-            if key["name"] not in whole["container"]:  # its points have taken its place
+            if key["name"] not in whole["container"]:  # replaced by the points that stand in it
                 container = whole["container"]
                 break
             container[key["name"]] = whole["container"][key["name"]]

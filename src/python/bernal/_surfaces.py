@@ -1,16 +1,12 @@
-"""Surfaces that stand in no file: arrays, and the meshes of other packages."""
+"""Surfaces from arrays, and from meshes of other packages."""
 
 from __future__ import annotations
 
-import atexit
 import hashlib
-import multiprocessing
-import multiprocessing.util
+import itertools
 import numbers
 import operator
 import os
-import shutil
-import tempfile
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
@@ -19,44 +15,20 @@ from numpy.typing import NDArray
 
 from . import _errors
 
+Array = NDArray[np.float64]
+
 MESHES = """
 Instead of a file: `(vertices, faces)`, arrays of shape (V, 3) and (F, 3) or (F, 4), faces of any number of corners as
-lists; or a mesh of trimesh, meshio or PyVista. They become a file of the same doubles, which lasts as long as this
-process; `Packing.write` copies it beside the result.
+lists; or a mesh of trimesh, meshio or PyVista. `Packing.write` and `Scene.write` write a file of the same doubles.
 """
-
-
-_folders: dict[int, str] = {}  # of this process, and of those that it was forked from
-
-
-def _remove(process: int) -> None:
-    if process == os.getpid():
-        shutil.rmtree(_folders[process], ignore_errors=True)
-
-
-def folder() -> str:
-    """Where what this process makes for itself stands until it ends."""
-    process = os.getpid()
-    if process not in _folders:
-        _folders[process] = tempfile.mkdtemp(prefix="bernal-")
-        if multiprocessing.parent_process() is None:
-            atexit.register(_remove, process)
-        else:  # which ends without atexit
-            multiprocessing.util.Finalize(None, _remove, (process,), exitpriority=0)
-    return _folders[process]
-
-
-def is_passing(file: str) -> bool:
-    """Whether the file will be gone once such a process has ended."""
-    return any(os.path.abspath(file).startswith(each + os.sep) for each in _folders.values())
 
 
 def _refuse(message: str) -> NoReturn:
     raise _errors.InputError("bad_mesh", message)
 
 
-def doubles(values: Any, name: str, shape: str) -> NDArray[np.float64]:
-    """An array of doubles of real numbers; refuses what would have to be guessed at."""
+def doubles(values: Any, name: str, shape: str) -> Array:
+    """An array of doubles; refuses masked values, complex numbers, and others that are no exact doubles."""
     if np.ma.is_masked(values):
         _refuse(f"{name} are masked in places, which only you can fill or leave out")
     try:
@@ -105,7 +77,7 @@ def _faces(faces: Any) -> list[list[int]]:
 
 
 def _flat_faces(faces: Any) -> list[list[int]]:
-    """PyVista's: each face as the number of its corners, then the corners."""
+    """Faces in PyVista's format: the number of corners of a face, then the corners, for each face."""
     array = np.asarray(faces)
     if array.size and not np.issubdtype(array.dtype, np.integer):
         _refuse(f"faces are numbers of vertices, integers, not {array.dtype}")
@@ -119,7 +91,7 @@ def _flat_faces(faces: Any) -> list[list[int]]:
 
 
 def _of_cells(cells: dict[str, Any]) -> list[list[int]]:
-    """meshio's: arrays by the kind of cell, of which faces are meant."""
+    """Faces in meshio's format: an array for each kind of cell."""
     kinds = {kind: block for kind, block in cells.items() if len(block)}
     faces = [kind for kind in kinds if kind in ("triangle", "quad", "polygon")]
     others = [kind for kind in kinds if kind not in (*faces, "vertex", "line")]
@@ -132,7 +104,7 @@ def _of_cells(cells: dict[str, Any]) -> list[list[int]]:
 
 
 def _depth(value: Any) -> int:
-    """In how many lists numbers stand, by the first of each."""
+    """How deep lists are nested, by the first element of each."""
     if hasattr(value, "ndim"):
         return int(value.ndim)
     if isinstance(value, (tuple, list)):
@@ -141,15 +113,15 @@ def _depth(value: Any) -> int:
 
 
 def _is_pair(mesh: Any) -> bool:
-    """Whether these are vertices and faces, and not two files or meshes."""
+    """Whether this is a pair of vertices and faces, and not of two files or meshes."""
     if not isinstance(mesh, (tuple, list)) or len(mesh) != 2 or _depth(mesh[0]) > 2:
         return False
-    whole = ("vertices", "points", "_as_start", "__fspath__")
+    whole = ("vertices", "points", "_as_toml", "__fspath__")
     return not any(isinstance(part, str) or any(hasattr(part, name) for name in whole) for part in mesh)
 
 
 def _parts(mesh: Any) -> tuple[Any, list[list[int]]] | None:
-    """Vertices and faces of what is like a mesh; None for what is none."""
+    """The vertices and faces of a mesh of any kind; None if it is no mesh."""
     if _is_pair(mesh):
         return mesh[0], _faces(mesh[1])
     if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):  # trimesh
@@ -162,7 +134,37 @@ def _parts(mesh: Any) -> tuple[Any, list[list[int]]] | None:
     return None
 
 
-def _off(vertices: Any, faces: list[list[int]]) -> bytes:
+class Surface:
+    """A surface from arrays, the `file` of a `Mesh` that was made of them. Immutable.
+
+    vertices : shape (V, 3). corners : of all faces, one after the other. counts : how many each face has.
+    """
+
+    def __init__(self, vertices: Array, corners: NDArray[np.uint32], counts: NDArray[np.uint32]) -> None:
+        self.vertices, self.corners, self.counts = vertices, corners, counts
+        for array in self.arrays:
+            array.setflags(write=False)
+        digest = hashlib.sha256(b"".join(array.tobytes() for array in self.arrays)).hexdigest()
+        self.name = f"surface-{digest[:16]}.off"  # what it is called in TOML, and beside a result
+
+    @property
+    def arrays(self) -> tuple[Array, NDArray[np.uint32], NDArray[np.uint32]]:
+        return self.vertices, self.corners, self.counts
+
+    def _as_toml(self) -> str:
+        return f'"{self.name}"'
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Surface) and self.name == other.name
+
+    def __hash__(self) -> int:
+        return hash(self.name)
+
+    def __repr__(self) -> str:
+        return f"<surface of {len(self.vertices):,} vertices and {len(self.counts):,} faces>"
+
+
+def _surface(vertices: Any, faces: list[list[int]]) -> Surface:
     points = doubles(vertices, "vertices", "(V, 3)")
     if points.ndim != 2 or points.shape[1] != 3 or not len(points):
         _refuse(f"vertices are an array of shape (V, 3), not {points.shape}")
@@ -171,33 +173,21 @@ def _off(vertices: Any, faces: list[list[int]]) -> bytes:
     for face in faces:
         if len(face) < 3 or min(face) < 0 or max(face) >= len(points):
             _refuse(f"a face has three or more of the vertices 0 to {len(points) - 1}, not {face}")
-    lines = [f"OFF\n{len(points)} {len(faces)} 0\n"]
-    lines += [f"{x!r} {y!r} {z!r}\n" for x, y, z in points.tolist()]  # the shortest that read back as the same
-    lines += [f"{len(face)} {' '.join(map(str, face))}\n" for face in faces]
-    return "".join(lines).encode()
+    corners = np.fromiter(itertools.chain.from_iterable(faces), np.uint32)
+    return Surface(np.array(points, order="C"), corners, np.array([len(face) for face in faces], np.uint32))
 
 
-def written(content: bytes, ending: str) -> str:
-    """A file of this content, named after it."""
-    name = os.path.join(folder(), hashlib.sha256(content).hexdigest()[:16] + ending)
-    if not os.path.exists(name):
-        with tempfile.NamedTemporaryFile(dir=folder(), delete=False) as file:
-            file.write(content)
-        os.replace(file.name, name)
-    return name
-
-
-def files_of(value: Any) -> Any:
-    """The whole name of a file, or of several, in place of its name, a mesh or a packing."""
+def named(value: Any) -> Any:
+    """The value of a key for files: an absolute path, a surface, a packing to start from, or a list of such."""
     if isinstance(value, (str, os.PathLike)):
         return os.path.abspath(path(value, "the file"))
-    if hasattr(value, "_as_start"):  # a Packing
-        return value._as_start()
+    if hasattr(value, "_as_toml"):
+        return value
     parts = _parts(value)
     if parts is not None:
-        return written(_off(*parts), ".off")
+        return _surface(*parts)
     if isinstance(value, Iterable):
-        return [files_of(part) for part in value]
+        return [named(part) for part in value]
     _refuse(
         f"neither a file nor a mesh: {type(value).__name__}; give a path, (vertices, faces), or a mesh of trimesh, "
         "meshio or PyVista"

@@ -1,4 +1,4 @@
-"""Values of Python as values of a scene's TOML."""
+"""Values of Python as TOML."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from . import _errors
 
 
 def plain(value: Any) -> Any:
-    """Flags, numbers, text and lists of such, from whatever is like them: arrays, paths, tuples."""
+    """A flag, a number, text or a list of such, from arrays, paths, tuples and the like."""
     if hasattr(value, "tolist"):  # arrays and scalars of NumPy
         value = value.tolist()
     if value is None or isinstance(value, (bool, str)):
@@ -23,7 +23,7 @@ def plain(value: Any) -> Any:
         return float(value)
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    if hasattr(value, "_as_toml"):  # a size distribution
+    if hasattr(value, "_as_toml"):  # a size distribution, a surface, a packing to start from
         return value
     if isinstance(value, Iterable) and not isinstance(value, (bytes, dict)):
         return [plain(part) for part in value]
@@ -33,7 +33,7 @@ def plain(value: Any) -> Any:
 
 
 def text_of(value: Any) -> str:
-    """Of a plain value."""
+    """A plain value as TOML."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,6 +1,7 @@
-"""The sizes that pack densest, or as densely as asked, by the rod model. See `bernal.predict` for what that is worth.
+"""Searches for sizes that pack densest, or to a given packing fraction, by the rod model; `bernal.predict` says how good
+it is.
 
-Sizes in the answers, `diameters`, are distributions: `bernal.Scene(…, diameters=answer.diameters)`.
+In the answers `diameters` is a size distribution: `bernal.Scene(…, diameters=answer.diameters)`.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ def _answer(answer: Any) -> Prediction:
 
 
 def maximise(populations: Iterable[float | Sizes], *, rods: int = 16000, progress: Progress = None) -> Prediction:
-    """How much of each of two to six populations packs densest: `maximise([1, 3, 9])`, diameters or distributions.
+    """Finds the densest mixture of two to six populations, diameters or distributions: `maximise([1, 3, 9])`.
 
-    Returns phi, error, rods, shares (of the volume, in the order given), diameters (the mixture), and how sure that
-    is: of `starts` searches `agreeing` ended within 0.00001 of the best, the worst `spread` below it.
+    Returns phi, error, rods, shares (of the volume, in the order given), diameters (the mixture), and how reliable the
+    search was: of `starts` searches `agreeing` ended within 0.00001 of the best, the worst one `spread` below it.
     """
     parts = [*populations]
     answer = _answer(finish(_core.maximise([scene_of_sizes(part) for part in parts], _rods(rods)), progress))
@@ -46,10 +47,10 @@ def target(
     rods: int = 16000,
     progress: Progress = None,
 ) -> Prediction:
-    """The member of a family of sizes that packs to `phi`: `target(0.7)` are lognormal sizes of sigma 0.4619.
+    """Finds the member of a family of sizes that packs to `phi`: `target(0.7)` gives lognormal sizes of sigma 0.4619.
 
-    family : a distribution for each number from `narrow` to `wide`; the first that will do from `narrow` on is taken.
-        If None lognormal ones by volume, whose number is sigma.
+    family : a function that returns the distribution for a number from `narrow` to `wide`; the smallest number that
+        packs to `phi` is taken. Without it lognormal sizes by volume, whose number is sigma.
     Returns found, parameter, diameters, phi, error, rods; where nothing is found, `reachable` says what the family
     reaches, from the least to the most, and the sizes are those that come nearest.
     """
@@ -66,7 +67,8 @@ def target(
 def best(
     smallest: float, largest: float, count: int = 3, *, rods: int = 16000, progress: Progress = None
 ) -> Prediction:
-    """The `count` diameters between two, both among them, that pack densest, and their shares of the volume."""
+    """Finds the `count` diameters from `smallest` to `largest`, both included, that pack densest, and their shares of
+    the volume."""
     count = _toml.whole(count, "count", _toml.INT)
     answer = _answer(finish(_core.densest_sizes(_size(smallest), _size(largest), count, _rods(rods)), progress))
     values = [2 * radius for radius in answer.pop("radii")]
@@ -79,8 +81,9 @@ def best(
 def density(
     smallest: float, largest: float, bins: int = 16, *, rods: int = 16000, progress: Progress = None
 ) -> Prediction:
-    """The density between two diameters that packs densest, by volume and in 2, 4, 8, 16, 32 or 64 bins on a
-    logarithmic axis; as a sieve curve. `levels` says what fewer bins reach, `power_law_phi` the best power law."""
+    """Finds the size density by volume that packs densest, in 2, 4, 8, 16, 32 or 64 bins on a logarithmic axis from
+    `smallest` to `largest`, as a sieve curve. `levels` says what fewer bins reach, `power_law_phi` what the best power
+    law does."""
     bins = _toml.whole(bins, "bins", _toml.INT)
     answer = _answer(finish(_core.densest_density(_size(smallest), _size(largest), bins, _rods(rods)), progress))
     edges, passing = [2 * radius for radius in answer.pop("radii")], [0.0]
@@ -91,8 +94,8 @@ def density(
 
 
 def relative_viscosity(solids: float, phi: float, intrinsic: float = 2.5) -> float:
-    """Viscosity of a suspension with the volume fraction `solids` of spheres that pack to `phi`, over that of its
-    liquid (Krieger and Dougherty)."""
+    """The viscosity of a suspension over that of its liquid, with a volume fraction `solids` of spheres that pack to
+    `phi` (Krieger and Dougherty)."""
     return float(_core.relative_viscosity(*(_toml.number(each, "a fraction") for each in (solids, phi, intrinsic))))
 
 
