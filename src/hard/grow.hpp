@@ -39,7 +39,7 @@ namespace bernal {
 /// for the minimum image: 2.5 of the largest diameters, but along axes with walls. Throws Error{bad_scene} if
 /// it is that from the start, or if phi_init is denser than random insertion reaches. Precondition: 2 to 6
 /// dimensions. Cost: some 2,000 collisions a sphere at 0.5 to 0.8 µs. One thread.
-StageEnd grow(Work& work, const Grow& options);
+StageEnd grow(const Grow& options, SpheresInBox& in_box, Reporter& report);
 
 /// Growth in a convex container with the sizes as they were drawn: hard spheres fly, collide with each other
 /// and the walls, and grow in proportion until they have their radii (Lubachevsky & Stillinger, J. Stat.
@@ -63,7 +63,7 @@ StageEnd grow(Work& work, const Grow& options);
 /// at 0.5 to 0.8 µs; as much again after spheres were taken out. Han's cylinder (R = 1, H = 2, r = 0.0309):
 /// 0.60 in 17 s, 0.62 in 24 s, where relaxation takes 0.8 s and 2.7 s; 0.63 in 41 s, where relaxation ends at
 /// 0.6288 after 59 s. One thread.
-StageEnd grow_in_container(Work& work, const Grow& options);
+StageEnd grow_in_container(const Grow& options, SpheresInBed& in_bed, Reporter& report);
 
 /// What it brings with it, with its price.
 std::vector<PlanItem> effects_of_growth(const Grow& options, const Outlook& outlook);
@@ -86,9 +86,9 @@ struct Grown {
 
 /// What all growth consists of: spheres fly until their radii are `largest` times the given ones, or they
 /// jam, or the box has become too narrow: then it ends with hit_limit. Moves the centres; radii stay as they
-/// are. `report` is called now and then, with the size that the spheres have and how far that is.
+/// are. `on_growth` is called now and then, with the size that the spheres have and how far that is.
 template <int D>
-Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Work& work, const Grow& options,
-              const std::function<void(double size, double done)>& report);
+Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Reporter& report,
+              const Grow& options, const std::function<void(double size, double done)>& on_growth);
 
 }  // namespace bernal

@@ -32,7 +32,7 @@ namespace bernal {
 /// minute for 10,000. Cancelled, it ends within a step. Memory about 1 kB a sphere. One thread; the same bits
 /// each time.
 ///
-/// Along axes on which the box ends at walls, by `work.walls`, these are contacts like any other, and dilate
+/// Along axes on which the box ends at walls, by `Task::walls`, these are contacts like any other, and dilate
 /// with the box. In equilibrium the forces of C contacts balance D (N - rattlers) times, of which as many
 /// hold anyway as there are motions of all spheres together that no wall feels: D shifts in a periodic box,
 /// one for each axis without walls between walls. What bears a pressure has one solution of these equations
@@ -40,7 +40,8 @@ namespace bernal {
 ///   C = D (N - rattlers) - symmetries + 1:
 /// the isostatic number, of frictionless spheres that nothing but the pressure presses together.
 template <int D>
-StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
+StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, const SpheresInBox& in_box,
+                Reporter& report);
 
 /// The key of a stage that ends with it.
 template <class Options>
@@ -81,28 +82,29 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
 
 /// The end of every stage that packs a bed: polishes contacts until their gap ratios are below `polish`, if
 /// that is above 0, or to the skin of the bed where that is wider. All sizes grow by one factor, which
-/// `work.size_scale` holds, for the stages to come too. Returns `end`, or why polishing ended; what is too
-/// loose to be polished stays as it is, and `work.missed` says so. So it does where a few spheres, wedged in
-/// between walls, keep the sizes from growing until the others hold each other too: the rest is loose.
-/// What is said to be closed is counted by the spheres as they lie (`what_is_open`).
-StageEnd finish_in_bed(StageEnd end, double polish, Work& work);
+/// `Supply::scale` holds, for the stages to come too. Returns `end`, or why polishing ended; what is too
+/// loose to be polished stays as it is, and `Reporter::missed` says so. So it does where a few spheres,
+/// wedged in between walls, keep the sizes from growing until the others hold each other too: the rest is
+/// loose. What is said to be closed is counted by the spheres as they lie (`what_is_open`).
+StageEnd finish_in_bed(StageEnd end, double polish, SpheresInBed& in_bed, Reporter& report);
 
 /// The end of every stage that lets a periodic box follow from the packing: polishes contacts to the overlap
 /// ratio `polish`, if that is above 0; grows or shrinks the box until nothing overlaps more than is allowed;
 /// moves the spheres apart in proportion where the scene asks for a larger box; and hands all of it to
-/// `work`. Returns `end`, or why polishing ended, and `work.missed` says what is open: by the spheres
+/// `in_box`. Returns `end`, or why polishing ended, and `Reporter::missed` says what is open: by the spheres
 /// as they lie (`what_is_open`), or because the larger box opened it again. Cost: a look at all near pairs,
 /// and `polish`.
 template <int D>
-StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish, Work& work);
+StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish,
+                                SpheresInBox& in_box, Reporter& report);
 
 /// The end of a stage that polished to `polish` and came to `end`, where `open` says what was found open:
-/// what holds no spheres is not converged, whatever the solver says. `work.missed` tells.
-StageEnd end_of_polish(StageEnd end, double polish, const std::optional<std::string>& open, Work& work);
+/// what holds no spheres is not converged, whatever the solver says. `Reporter::missed` tells.
+StageEnd end_of_polish(StageEnd end, double polish, const std::optional<std::string>& open, Reporter& report);
 
 /// The end of a stage whose spheres stand in a box that is larger than they need: contacts were to be closed
-/// and are open, which `work.missed` says, where `polish` is above 0.
-StageEnd end_in_larger_box(StageEnd end, double polish, Work& work);
+/// and are open, which `Reporter::missed` says, where `polish` is above 0.
+StageEnd end_in_larger_box(StageEnd end, double polish, Reporter& report);
 
 /// Whether the target edges have room for a box of these edges, and for the rounding of moving to them.
 template <int D>

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "soft/below_level.hpp"
-#include "work/work.hpp"
+#include "work/spheres_in_bed.hpp"
 
 namespace bernal {
 
@@ -32,9 +32,9 @@ struct BedPorosity {
   double core;
 };
 
-/// Of the bed of that work; of a heap the core is the whole. None of a few spheres
+/// Of a bed; of a heap the core is the whole. None of a few spheres
 /// on a floor, which have no porosity in (0, 1). Error: as of `Heights`. O(N).
-std::optional<BedPorosity> porosity_of(const Work&, const Heights&, const BedTop&);
+std::optional<BedPorosity> porosity_of(const Bed&, const Heights&, const BedTop&);
 
 /// How many diameters of its spheres a bed is across.
 struct Across {
@@ -48,7 +48,7 @@ struct Across {
 /// walls; error then some hundredths.
 Across across_of(const Container&, const Vector<3>& down, double mean_diameter);
 /// 6 V / A of the first `count` of the sequence.
-double mean_diameter(const Work&, std::size_t count);
+double mean_diameter(const SpheresInBed&, std::size_t count);
 
 /// How porous a bed is to become.
 struct DensityAim {

@@ -10,7 +10,8 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/soft/relax.hpp"
 #include "soft/soft_packing.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_box.hpp"
 
 namespace bernal {
 
@@ -127,12 +128,18 @@ class GrowthTeller {
  public:
   /// `growth` is how far that has come, in a run of which the share `before` was over when it began. Radii
   /// stay. O(N).
-  GrowthTeller(Work& work, const GrowingBox& box, const BoxGrowth& growth, double before = 0)
-      : work_(work), volume_(work.volume_of_spheres()), box_(box), growth_(growth), before_(before) {}
+  GrowthTeller(SpheresInBox& in_box, const Reporter& report, const GrowingBox& box, const BoxGrowth& growth,
+               double before = 0)
+      : in_box_(in_box),
+        report_(report),
+        volume_(in_box.volume_of_spheres()),
+        box_(box),
+        growth_(growth),
+        before_(before) {}
 
   /// To be called on growth.
   void grown(double factor) {
-    work_.edges *= factor;
+    in_box_.edges *= factor;
     tell(true);
   }
   /// To be called after sweeps: of very many spheres some take minutes until the box grows.
@@ -141,15 +148,18 @@ class GrowthTeller {
   }
 
  private:
-  static constexpr double most = 0.99, between = 0.5;  // seconds
+  static constexpr double between = 0.5;  // seconds
 
   void tell(bool for_history) {
     told_ = watch_.seconds();
     done_ = std::max(done_, before_ + (1 - before_) * share_of_work(growth_, box_));
-    work_.box_milestone("relax", volume_, std::min(most, done_), growth_.molr, for_history);
+    report_.milestone("relax", in_box_.spheres.size(), volume_ / in_box_.edges.prod(), growth_.molr, done_,
+                      for_history);
   }
 
-  Work& work_;
+  SpheresInBox& in_box_;
+
+  const Reporter& report_;
   const double volume_;  // of the spheres
   const GrowingBox& box_;
   const BoxGrowth& growth_;

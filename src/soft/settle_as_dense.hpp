@@ -4,7 +4,8 @@
 #include "bernal/scene/bed_target.hpp"
 #include "soft/below_level.hpp"
 #include "soft/tap.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_bed.hpp"
 
 namespace bernal {
 
@@ -21,11 +22,13 @@ struct Laying {
 /// Lays a bed, and again from what stood there before as long as it is not as porous as the target asks for:
 /// denser or looser to begin with; where relaxation packs them no denser, tapped; where they would settle
 /// denser however loose they begin, with friction of the least angle that holds them. The attempt that came
-/// nearest is kept. Says in `Work::account` how porous the bed is and what was the aim, and in `Work::missed`
-/// where it was missed by more than 0.005. Of a bed lower than four diameters no law tells the aim.
+/// nearest is kept. Says in `Reporter::account` how porous the bed is and what was the aim, and in
+/// `Reporter::missed` where it was missed by more than 0.005. Of a bed lower than four diameters no law tells
+/// the aim.
 ///
 /// Poured: laid once, at `poured`. Cost: that of an attempt, once to some ten times.
-StageEnd settle_as_dense(Work& work, const BedTarget& target, const Heights& heights, const BedTop& top,
-                         double poured, const std::function<StageEnd(Laying&)>& lay);
+StageEnd settle_as_dense(SpheresInBed& in_bed, Reporter& report, const BedTarget& target,
+                         const Heights& heights, const BedTop& top, double poured,
+                         const std::function<StageEnd(Laying&)>& lay);
 
 }  // namespace bernal
