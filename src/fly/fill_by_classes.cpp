@@ -35,14 +35,16 @@ constexpr double first_step = 0.3, successful = 0.4, adapted = 1.1, shortest_ste
 template <int D>
 class Insertion {
  public:
-  explicit Insertion(Work& work)
-      : work_(work),
-        random_(work.random(Stream::insert)),
-        spheres_(work.spheres.in<D>()),
-        edges_(*work.target_edges),
+  Insertion(SpheresInBox& in_box, Reporter& report)
+      : in_box_(in_box),
+        report_(report),
+        random_(report.random(Stream::insert)),
+        spheres_(in_box.spheres.in<D>()),
+        edges_(*in_box.task.target_edges),
         boundary_{edges_},
         smallest_(std::ranges::min(spheres_.r)),
-        reach_share_((1 - work.allowed_overlap) * (1 + tolerance::growth(edges_.maxCoeff() / smallest_))),
+        reach_share_((1 - in_box.task.allowed_overlap) *
+                     (1 + tolerance::growth(edges_.maxCoeff() / smallest_))),
         grid_(boundary_, smallest_, std::ranges::max(spheres_.r), spheres_.size()),
         placed_(spheres_.size(), false),
         order_(spheres_.size()) {
@@ -54,10 +56,10 @@ class Insertion {
   /// cancelled only those that found one are left.
   StageEnd run() {
     std::size_t first = 0;
-    const Resumable part(work_, "classes",
+    const Resumable part(report_, "classes",
                          [&](Archive& a) { a(first, random_, spheres_, grid_, placed_, count_, trials_); });
     for (Id i = 0; i < spheres_.size(); ++i) balls_.push_back({spheres_.center(i), spheres_.r[i]});
-    if (!part.resumed() && work_.placed) keep_places();
+    if (!part.resumed() && in_box_.placed) keep_places();
     while (first < order_.size()) {
       const double least = least_of_class * spheres_.r[order_[first]];
       std::size_t last = first;
@@ -65,19 +67,19 @@ class Insertion {
       insert_class({order_.begin() + static_cast<std::ptrdiff_t>(first),
                     order_.begin() + static_cast<std::ptrdiff_t>(last)});
       first = last;
-      cancelled_ = cancelled_ || work_.monitor.stop();
+      cancelled_ = cancelled_ || report_.monitor.stop();
       if (cancelled_) break;
     }
-    if (cancelled_) forget_those_without_places();
     std::vector<Id> waiting;
     std::ranges::copy_if(order_, std::back_inserter(waiting), [&](Id i) { return !placed_[i]; });
     const bool all = waiting.empty();
     if (!all && !cancelled_) move_to_holes<D>(spheres_, edges_, std::move(waiting), random_);
-    if (trials_.events() > 0) work_.effects["trial places"] += {"", trials_.events(), trials_.seconds()};
-    work_.spheres = std::move(spheres_);
-    work_.edges = edges_;
-    work_.needed_volume = edges_.prod();
-    work_.placed = true;
+    if (trials_.events() > 0) report_.effects["trial places"] += {"", trials_.events(), trials_.seconds()};
+    in_box_.spheres = std::move(spheres_);
+    if (cancelled_) in_box_.leave(with_places());
+    in_box_.edges = edges_;
+    in_box_.needed_volume = edges_.prod();
+    in_box_.placed = true;
     return cancelled_ ? StageEnd::cancelled : all ? StageEnd::converged : StageEnd::full;
   }
 
@@ -89,15 +91,15 @@ class Insertion {
     double r;
   };
 
-  void forget_those_without_places() {
-    Spheres<D> placed;
-    for (std::size_t i = 0; i < spheres_.size(); ++i)
-      if (placed_[i]) placed.push_back(spheres_.center(i), spheres_.r[i]);
-    spheres_ = std::move(placed);
+  std::vector<Id> with_places() const {
+    std::vector<Id> numbers;
+    for (Id i = 0; i < placed_.size(); ++i)
+      if (placed_[i]) numbers.push_back(i);
+    return numbers;
   }
 
   void keep_places() {
-    Vector<D> edges = work_.edges;
+    Vector<D> edges = in_box_.edges;
     resize_box<D>(spheres_, edges, edges_);
     for (const Id i : order_)
       if (const Vector<D> c = spheres_.center(i); push_at(c, i).overlaps == 0) place(i, c);
@@ -107,7 +109,7 @@ class Insertion {
     double step = first_step;
     int failures = 0;
     std::size_t waiting = 0, found = 0;
-    const Resumable part(work_, "class", [&](Archive& a) { a(step, failures, waiting, found); });
+    const Resumable part(report_, "class", [&](Archive& a) { a(step, failures, waiting, found); });
     for (bool goes_on = part.resumed(); failures < patience;) {
       if (!std::exchange(goes_on, false)) {
         waiting = found = 0;
@@ -117,10 +119,11 @@ class Insertion {
           if (find_place(i)) ++found;
         }
       }
-      if (found == waiting || (cancelled_ = work_.stop())) return;
+      if (found == waiting || (cancelled_ = report_.stop())) return;
       failures = static_cast<double>(found) < worthwhile * static_cast<double>(waiting) ? failures + 1 : 0;
       for (int k = 0; k < sweeps_a_round; ++k) move_at_random(members, step);
-      work_.milestone("fill", static_cast<double>(count_) / static_cast<double>(placed_.size()), 0);
+      const double done = static_cast<double>(count_) / static_cast<double>(placed_.size());
+      report_.milestone("fill", in_box_, 0, done);
     }
   }
 
@@ -202,7 +205,9 @@ class Insertion {
     });
   }
 
-  Work& work_;
+  SpheresInBox& in_box_;
+
+  Reporter& report_;
   Random random_;
   Spheres<D> spheres_;
   const Vector<D> edges_;
@@ -220,21 +225,21 @@ class Insertion {
 
 }  // namespace
 
-StageEnd fill_by_classes(Work& work, const FillOptions& options) {
+StageEnd fill_by_classes(SpheresInBox& in_box, Reporter& report, const FillOptions& options) {
   bool inserted = false;
-  const Resumable part(work, "fill by classes", [&](Archive& a) {
+  const Resumable part(report, "fill by classes", [&](Archive& a) {
     a(inserted);
-    if (inserted) a(work.placed, work.edges, work.needed_volume);
+    if (inserted) a(in_box.placed, in_box.edges, in_box.needed_volume);
   });
-  if (!inserted && !work.spheres.empty() && fits_box(work)) {
-    const EffectTimer timer(work.effects["insertion"]);
-    const StageEnd end = with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
-      return Insertion<decltype(dimension)::value>(work).run();
+  if (!inserted && !in_box.spheres.empty() && fits_box(in_box)) {
+    const EffectTimer timer(report.effects["insertion"]);
+    const StageEnd end = with_dimension(in_box.dimension(), EveryDimension{}, [&](auto dimension) {
+      return Insertion<decltype(dimension)::value>(in_box, report).run();
     });
     if (end != StageEnd::full) return end;
   }
   inserted = true;
-  return fill_by_relaxation(work, options);
+  return fill_by_relaxation(in_box, report, options);
 }
 
 }  // namespace bernal

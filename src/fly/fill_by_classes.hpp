@@ -9,6 +9,6 @@ namespace bernal {
 ///
 /// A random place that overlaps is pushed to where it does not, a dozen times at most; between rounds of such
 /// trials the spheres of the class move at random. Cost: about 1 µs a trial in three dimensions.
-StageEnd fill_by_classes(Work& work, const FillOptions& options);
+StageEnd fill_by_classes(SpheresInBox& in_box, Reporter& report, const FillOptions& options);
 
 }  // namespace bernal

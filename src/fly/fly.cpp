@@ -36,35 +36,38 @@ void complete_fly(Fly& fly, Scene& scene, const schema::Section& section) {
 }
 
 /// Takes out the spheres that overlap their own image or do not fit between two walls.
-std::size_t drop_too_wide(Work& work) {
-  Spheres<dynamic> fitting(work.dimension());
-  fitting.reserve(work.spheres.size());
+std::size_t drop_too_wide(SpheresInBox& in_box) {
+  const Task& task = in_box.task;
+  const Spheres<dynamic>& spheres = in_box.spheres;
+  std::vector<std::uint32_t> fitting;
   const double skin = 1 + 1e-9;  // more than the margin that flying spheres keep from walls
-  for (std::size_t i = 0; i < work.spheres.size(); ++i) {
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
     bool fits = true;
-    for (int k = 0; k < work.dimension(); ++k)
-      fits = fits && 2 * work.spheres.r[i] * (work.has_wall(k) ? skin : 1) <= (*work.target_edges)[k];
-    if (fits) fitting.push_back(work.spheres.center(i), work.spheres.r[i]);
+    for (int k = 0; k < in_box.dimension(); ++k)
+      fits = fits && 2 * spheres.r[i] * (task.has_wall(k) ? skin : 1) <= (*task.target_edges)[k];
+    if (fits) fitting.push_back(i);
   }
-  const std::size_t dropped = work.spheres.size() - fitting.size();
-  if (dropped > 0) work.spheres = std::move(fitting);
+  const std::size_t dropped = spheres.size() - fitting.size();
+  if (dropped > 0) in_box.leave(fitting);
   return dropped;
 }
 
-StageEnd fill(Work& work, FillMethod method, const Fly& options) {
+StageEnd fill(SpheresInBox& in_box, Reporter& report, FillMethod method, const Fly& options) {
+  const FillOptions filling{.sweeps = static_cast<double>(options.sweeps)};
   switch (method) {
     case FillMethod::patent:
     case FillMethod::flight: {
-      const EffectTimer timer(work.effects["flight"]);
-      return method == FillMethod::patent ? fly_by_patent(work, options) : fly_by_events(work, options);
+      const EffectTimer timer(report.effects["flight"]);
+      return method == FillMethod::patent ? fly_by_patent(in_box, report, options)
+                                          : fly_by_events(in_box, report, options);
     }
     case FillMethod::classes:
-      return fill_by_classes(work, {.sweeps = static_cast<double>(options.sweeps)});
+      return fill_by_classes(in_box, report, filling);
     case FillMethod::relaxation:
     case FillMethod::automatic:
       break;
   }
-  return fill_by_relaxation(work, {.sweeps = static_cast<double>(options.sweeps)});
+  return fill_by_relaxation(in_box, report, filling);
 }
 
 bool flies(FillMethod method) { return method == FillMethod::patent || method == FillMethod::flight; }
@@ -88,32 +91,32 @@ FillChoice choose_filling(FillMethod method, const FillTask& task) {
   return {FillMethod::relaxation, "which fills a box fastest"};
 }
 
-StageEnd fly(Work& work, const FillChoice& choice, const Fly& options) {
-  std::size_t wanted = work.spheres.size(), too_wide = 0;
-  const Resumable part(work, "fly", [&](Archive& a) { a(wanted, too_wide, work.spheres); });
+StageEnd fly(SpheresInBox& in_box, Reporter& report, const FillChoice& choice, const Fly& options) {
+  std::size_t wanted = in_box.spheres.size(), too_wide = 0;
+  const Resumable part(report, "fly", [&](Archive& a) { a(wanted, too_wide, in_box.spheres, in_box.tags); });
   if (!part.resumed()) {
-    if (work.placed && work.edges == *work.target_edges) {
-      work.account = "all had places in this box before";
+    if (in_box.placed && in_box.edges == *in_box.task.target_edges) {
+      report.account = "all had places in this box before";
       return StageEnd::converged;
     }
-    too_wide = drop_too_wide(work);
+    too_wide = drop_too_wide(in_box);
   }
   StageEnd end = StageEnd::converged;
-  if (!work.spheres.empty()) {
-    end = fill(work, choice.method, options);
+  if (!in_box.spheres.empty()) {
+    end = fill(in_box, report, choice.method, options);
   }
-  work.edges = *work.target_edges;
-  work.placed = true;
-  work.needed_volume = work.edges.prod();
+  in_box.edges = *in_box.task.target_edges;
+  in_box.placed = true;
+  in_box.needed_volume = in_box.edges.prod();
 
-  work.account = fmt::format("by {}, {}", name_of(choice.method), choice.reason);
+  report.account = fmt::format("by {}, {}", name_of(choice.method), choice.reason);
   if (too_wide > 0) {
     end = end == StageEnd::converged ? StageEnd::full : end;
-    work.account += fmt::format("; {} wider than the box", grouped(too_wide));
+    report.account += fmt::format("; {} wider than the box", grouped(too_wide));
   }
-  const std::size_t missing = wanted - too_wide - work.spheres.size();
+  const std::size_t missing = wanted - too_wide - in_box.spheres.size();
   if (missing > 0 && flies(choice.method) && end == StageEnd::full)
-    work.account += fmt::format(
+    report.account += fmt::format(
         "; no place was free among {} in a row",
         grouped(static_cast<std::uint64_t>(options.patience * static_cast<double>(wanted - too_wide))));
   return end;
@@ -152,11 +155,11 @@ const StageEntry& entry_of<Fly>() {
                             "classes, relaxation: of all spheres, after which it stops", {1, 1e9})},
            .complete = completion(complete_fly)},
           {.in_box = true, .box_between_walls = true, .leaves_overlap = true, .fills_given_box = true}),
-      .act_in_box = act(+[](Work& work, const Fly& options) {
-        const FillChoice choice = choose_filling(options.method, work.fill_task);
+      .act_in_box = of_options(+[](const Fly& options, SpheresInBox& in_box, Reporter& report) {
+        const FillChoice choice = choose_filling(options.method, in_box.task.fill_task);
         Fly chosen = options;
         if (!chosen.dt) chosen.dt = choice.method == FillMethod::patent ? 0.01 : 0.25;
-        return fly(work, choice, chosen);
+        return fly(in_box, report, choice, chosen);
       }),
       .may_bring = {"flight", "collisions", "insertion", "trial places", "neighbour lists", "relaxation"},
       .effects = of_options(effects_of_flight),

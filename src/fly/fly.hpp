@@ -26,9 +26,9 @@ std::vector<PlanItem> effects_of_flight(const Fly& options, const Outlook& outlo
 /// face reappear on the opposite side.
 ///
 /// `converged`: all are placed, and none overlap. `full`: the rest, mostly the smallest, found no place, or
-/// were wider than the box; `hit_limit` and `cancelled` as they say. Then `work.spheres` holds those that are
-/// placed, in the order in which they were drawn. Spheres that have places in that very box already stay
-/// there. Precondition: `work.target_edges`. Deterministic in the seed.
-StageEnd fly(Work& work, const FillChoice& choice, const Fly& options);
+/// were wider than the box; `hit_limit` and `cancelled` as they say. Then those are left that
+/// are placed, in the order in which they were drawn. Spheres that have places in that very box already stay
+/// there. Precondition: `Task::target_edges`. Deterministic in the seed.
+StageEnd fly(SpheresInBox& in_box, Reporter& report, const FillChoice& choice, const Fly& options);
 
 }  // namespace bernal

@@ -220,10 +220,10 @@ void EventFlight<D>::fly() {
   for (Id i = 0; i < n; ++i) move_to(i, end_);
 }
 
-StageEnd fly_by_events(Work& work, const Fly& options) {
-  return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
+StageEnd fly_by_events(SpheresInBox& in_box, Reporter& report, const Fly& options) {
+  return with_dimension(in_box.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    return fly_until_full<EventFlight<D>, D>(work, options);
+    return fly_until_full<EventFlight<D>, D>(in_box, report, options);
   });
 }
 

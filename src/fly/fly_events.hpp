@@ -6,6 +6,7 @@
 #include "bernal/fly/fly.hpp"
 #include "core/archive.hpp"
 #include "fly/flying_spheres.hpp"
+#include "work/reporter.hpp"
 
 namespace bernal {
 
@@ -84,7 +85,7 @@ class EventFlight {
   std::uint64_t collisions_ = 0;
 };
 
-/// Fills the box `*work.target_edges` that way. As `fill_by_relaxation` otherwise.
-StageEnd fly_by_events(Work& work, const Fly& options);
+/// Fills the box `Task::target_edges` that way. As `fill_by_relaxation` otherwise.
+StageEnd fly_by_events(SpheresInBox& in_box, Reporter& report, const Fly& options);
 
 }  // namespace bernal

@@ -157,10 +157,10 @@ void PatentFlight<D>::step() {
   if (hits(next_, found) > 0) collide(found[0]);
 }
 
-StageEnd fly_by_patent(Work& work, const Fly& options) {
-  return with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
+StageEnd fly_by_patent(SpheresInBox& in_box, Reporter& report, const Fly& options) {
+  return with_dimension(in_box.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    return fly_until_full<PatentFlight<D>, D>(work, options);
+    return fly_until_full<PatentFlight<D>, D>(in_box, report, options);
   });
 }
 

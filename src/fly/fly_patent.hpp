@@ -5,6 +5,7 @@
 #include "bernal/fly/fly.hpp"
 #include "core/archive.hpp"
 #include "fly/flying_spheres.hpp"
+#include "work/reporter.hpp"
 
 namespace bernal {
 
@@ -74,7 +75,7 @@ class PatentFlight {
   std::uint64_t collisions_ = 0, steps_ = 0;
 };
 
-/// Fills the box `*work.target_edges` that way. As `fill_by_relaxation` otherwise.
-StageEnd fly_by_patent(Work& work, const Fly& options);
+/// Fills the box `Task::target_edges` that way. As `fill_by_relaxation` otherwise.
+StageEnd fly_by_patent(SpheresInBox& in_box, Reporter& report, const Fly& options);
 
 }  // namespace bernal

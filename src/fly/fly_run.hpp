@@ -2,23 +2,23 @@
 #include "bernal/fly/fly.hpp"
 #include "core/archive.hpp"
 #include "fly/flying_spheres.hpp"
+#include "work/reporter.hpp"
 
 namespace bernal {
 
 /// Inserts and flies in turn until all are placed, none finds a place for long, or the user stops it. What is
-/// placed by then is what `work` holds in the end.
+/// placed by then is what is left in the box in the end.
 template <class Flight, int D>
-StageEnd fly_until_full(Work& work, const Fly& options) {
+StageEnd fly_until_full(SpheresInBox& in_box, Reporter& report, const Fly& options) {
   constexpr double milestone_every = 0.01;
-  FlyingSpheres<D> spheres(work);
-  Flight flight(spheres, options, work.random(Stream::fly));
+  FlyingSpheres<D> spheres(in_box);
+  Flight flight(spheres, options, report.random(Stream::fly));
   StageEnd end = StageEnd::converged;
   double reported = 0;
-  const Resumable part(work, "flight", [&](Archive& a) {
-    a(reported, work.placed_share, work.placed_count, spheres, flight);
-  });
+  const Resumable part(report, "flight", [&](Archive& a) { a(reported, spheres, flight); });
+  const double filled = in_box.packing_fraction();
   while (!spheres.queue().empty()) {
-    if (work.stop()) {
+    if (report.stop()) {
       end = StageEnd::cancelled;
       break;
     }
@@ -32,15 +32,13 @@ StageEnd fly_until_full(Work& work, const Fly& options) {
     const double share = spheres.share();
     if (share < reported + milestone_every) continue;
     reported = share;
-    work.placed_share = share;
-    work.placed_count = spheres.size();
-    work.milestone("fly", std::min(share, 0.99), 0);
+    report.milestone("fly", spheres.size(), share * filled, 0, share);
   }
   if (flight.collisions() > 0)
-    work.effects["collisions"] += {"", flight.collisions(), flight.seconds_of_collisions()};
-  work.spheres = spheres.result();
-  work.edges = *work.target_edges;
-  work.placed = true;
+    report.effects["collisions"] += {"", flight.collisions(), flight.seconds_of_collisions()};
+  in_box.leave(spheres.write_to(in_box.spheres));
+  in_box.edges = *in_box.task.target_edges;
+  in_box.placed = true;
   return end;
 }
 

@@ -9,9 +9,9 @@
 namespace bernal {
 
 template <int D>
-FlyingSpheres<D>::FlyingSpheres(const Work& work, int axes)
-    : edges_(*work.target_edges),
-      drawn_(work.spheres.r),
+FlyingSpheres<D>::FlyingSpheres(const SpheresInBox& in_box, int axes)
+    : edges_(*in_box.task.target_edges),
+      drawn_(in_box.spheres.r),
       margin_(std::max(1e-10, 4 * tolerance::growth(edges_.maxCoeff() / std::ranges::min(drawn_)))),
       queue_(drawn_.size()),
       mean_radius_(std::accumulate(drawn_.begin(), drawn_.end(), 0.0) / static_cast<double>(drawn_.size())),
@@ -19,7 +19,7 @@ FlyingSpheres<D>::FlyingSpheres(const Work& work, int axes)
       largest_(std::ranges::max(drawn_)),
       skin_(std::min(0.3, 0.6 / D) * 2 * mean_radius_),
       axes_(axes) {
-  for (int k = 0; k < D; ++k) repeats_[k] = !work.has_wall(k);
+  for (int k = 0; k < D; ++k) repeats_[k] = !in_box.task.has_wall(k);
   std::iota(queue_.begin(), queue_.end(), Id{0});
   std::ranges::stable_sort(queue_, [&](Id a, Id b) { return drawn_[a] > drawn_[b]; });
   for (const double r : drawn_) whole_volume_ += std::pow(r / mean_radius_, D);
@@ -105,17 +105,15 @@ void FlyingSpheres<D>::accept(std::size_t place, const Vector<D>& c, Random& ran
 }
 
 template <int D>
-Spheres<dynamic> FlyingSpheres<D>::result() const {
-  std::vector<Id> order(size());
-  std::iota(order.begin(), order.end(), Id{0});
-  std::ranges::sort(order, [&](Id a, Id b) { return tags_[a] < tags_[b]; });
-  Spheres<D> spheres;
-  for (const Id i : order) {
+std::vector<typename FlyingSpheres<D>::Id> FlyingSpheres<D>::write_to(Spheres<dynamic>& drawn) const {
+  for (Id i = 0; i < size(); ++i) {
     Vector<D> c = center(i);
     for (int k = 0; k < D; ++k) wrap(c[k], k);
-    spheres.push_back(c, r_[i]);
+    drawn.set_center(tags_[i], c);
   }
-  return spheres;
+  std::vector<Id> numbers = tags_;
+  std::ranges::sort(numbers);
+  return numbers;
 }
 
 #define BERNAL_INSTANTIATE(D) template class FlyingSpheres<D>;

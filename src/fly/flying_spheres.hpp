@@ -12,7 +12,7 @@
 #include "core/event_clock.hpp"
 #include "core/made.hpp"
 #include "near/partial_grid.hpp"
-#include "work/work.hpp"
+#include "work/spheres_in_box.hpp"
 
 namespace bernal {
 
@@ -35,7 +35,7 @@ class FlyingSpheres {
   };
 
   /// Precondition: every sphere has room in the box for itself. `axes` as PartialGrid's.
-  explicit FlyingSpheres(const Work& work, int axes = PartialGrid::automatic);
+  explicit FlyingSpheres(const SpheresInBox& in_box, int axes = PartialGrid::automatic);
 
   std::size_t size() const { return tags_.size(); }
   std::size_t wanted() const { return drawn_.size(); }
@@ -172,10 +172,10 @@ class FlyingSpheres {
   /// Share of the volume that is to be placed which has been.
   double share() const { return volume_ / whole_volume_; }
 
-  /// Those that are placed, in the order in which they were drawn, with centres in [0, edges).
-  Spheres<dynamic> result() const;
+  /// Gives those that are placed their centres, in [0, edges). Returns their numbers, ascending.
+  std::vector<Id> write_to(Spheres<dynamic>& drawn) const;
 
-  /// All of their state, of the same work.
+  /// All of their state, of the same spheres in the same box.
   void archive(Archive& a) { a(x, v, queue_, tags_, r_, mass_, volume_, in_vain_, *grid_, pairs_); }
 
   Columns x, v;

@@ -52,10 +52,10 @@ bool insert_at_random(Spheres<D>& spheres, const std::vector<bool>& placed, cons
 
 /// Those of the box, in its coordinates.
 template <int D>
-std::vector<Wall<D>> walls_of(const Work& work, const Vector<D>& edges) {
+std::vector<Wall<D>> walls_of(const SpheresInBox& in_box, const Vector<D>& edges) {
   std::vector<Wall<D>> walls;
   for (int k = 0; k < D; ++k) {
-    if (!work.has_wall(k)) continue;
+    if (!in_box.task.has_wall(k)) continue;
     walls.push_back({.along = -Vector<D>::Unit(k), .extent = 0});
     walls.push_back({.along = Vector<D>::Unit(k), .extent = edges[k]});
   }
@@ -74,31 +74,33 @@ void require_room(const Spheres<D>& spheres, const Vector<D>& box, const std::ve
 }
 
 template <int D>
-void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
-  if (work.begun > 0 || work.placed) {
-    if (work.allowed_overlap > 0 || work.may_overlap) {  // which other stages leave, and a start may have
+void start(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report, double phi_init) {
+  if (in_box.begun > 0 || in_box.placed) {
+    // Which other stages leave, and a start may have.
+    if (in_box.task.allowed_overlap > 0 || in_box.may_overlap) {
       Spheres<D> there = spheres;
-      if (!work.placed) there.resize(work.begun);
-      const Vector<D> free = edges_free_of_overlap<D>(there, edges, 0, work.walls);
+      if (!in_box.placed) there.resize(in_box.begun);
+      const Vector<D> free = edges_free_of_overlap<D>(there, edges, 0, in_box.task.walls);
       if (!free.allFinite())
         throw Error(ErrorCode::bad_scene,
                     "two spheres of the start have the same place: begin with \"relax\", which parts them");
       if (free[0] > edges[0]) resize_box<D>(spheres, edges, free);
     }
-    if (work.placed) return require_room<D>(spheres, edges, work.walls);
+    if (in_box.placed) return require_room<D>(spheres, edges, in_box.task.walls);
   }
-  const EffectTimer timer(work.effects["insertion"]);
-  double volume = work.volume_of_spheres() / phi_init;
-  if (work.target_edges) volume = std::max(volume, work.target_edges->prod());
+  const EffectTimer timer(report.effects["insertion"]);
+  double volume = in_box.volume_of_spheres() / phi_init;
+  if (in_box.task.target_edges) volume = std::max(volume, in_box.task.target_edges->prod());
   const double wider = std::pow(volume / edges.prod(), 1.0 / D);
-  if (work.begun == 0)
+  if (in_box.begun == 0)
     edges *= wider;
   else if (wider > 1)
     resize_box<D>(spheres, edges, edges * wider);
-  require_room<D>(spheres, edges, work.walls);
+  require_room<D>(spheres, edges, in_box.task.walls);
   std::vector<bool> placed(spheres.size(), false);
-  std::fill_n(placed.begin(), work.begun, true);
-  if (!insert_at_random<D>(spheres, placed, edges, work.walls, work.random(Stream::grow), work.monitor))
+  std::fill_n(placed.begin(), in_box.begun, true);
+  if (!insert_at_random<D>(spheres, placed, edges, in_box.task.walls, report.random(Stream::grow),
+                           report.monitor))
     throw Error(ErrorCode::bad_scene,
                 fmt::format("grow cannot start at phi_init = {}: random insertion found no place for one of "
                             "the spheres; take a smaller one",
@@ -109,59 +111,61 @@ void start(Spheres<D>& spheres, Vector<D>& edges, Work& work, double phi_init) {
 /// they lack they may have room for elsewhere: then they stand in the box that was asked for, touching its
 /// walls exactly.
 template <int D>
-bool stands_in_asked_box(const Spheres<D>& grown, const Vector<D>& edges, Work& work) {
+bool stands_in_asked_box(const Spheres<D>& grown, const Vector<D>& edges, SpheresInBox& in_box) {
   constexpr double little = 1e-4;
-  if (work.walls.empty() || !work.target_edges) return false;
-  const Vector<D> asked = *work.target_edges;
+  if (in_box.task.walls.empty() || !in_box.task.target_edges) return false;
+  const Vector<D> asked = *in_box.task.target_edges;
   if (!(edges[0] > asked[0]) || edges[0] > (1 + little) * asked[0]) return false;
   Spheres<D> spheres = grown;
   Vector<D> now = edges;
   resize_box<D>(spheres, now, asked);
   for (int k = 0; k < D; ++k)
-    for (std::size_t i = 0; i < spheres.size() && work.has_wall(k); ++i) {
+    for (std::size_t i = 0; i < spheres.size() && in_box.task.has_wall(k); ++i) {
       double& x = spheres.x[static_cast<std::size_t>(k)][i];
       if (2 * spheres.r[i] > asked[k]) return false;
       x = std::max(spheres.r[i], std::min(x, asked[k] - spheres.r[i]));
       if (asked[k] - x < spheres.r[i]) return false;
     }
-  const Vector<D> apart = edges_around_walls(asked, work.walls);
-  if (!overlapping<D>(spheres, apart, work.allowed_overlap).empty()) return false;
-  work.spheres = spheres;
-  work.edges = asked;
-  work.needed_volume = asked.prod();
-  work.placed = true;
+  const Vector<D> apart = edges_around_walls(asked, in_box.task.walls);
+  if (!overlapping<D>(spheres, apart, in_box.task.allowed_overlap).empty()) return false;
+  in_box.spheres = spheres;
+  in_box.edges = asked;
+  in_box.needed_volume = asked.prod();
+  in_box.placed = true;
   return true;
 }
 
 template <int D>
-StageEnd grow_in(Work& work, const Grow& options) {
-  Spheres<D> spheres = work.spheres.in<D>();
-  Vector<D> edges = work.edges;
+StageEnd grow_in(SpheresInBox& in_box, Reporter& report, const Grow& options) {
+  Spheres<D> spheres = in_box.spheres.in<D>();
+  Vector<D> edges = in_box.edges;
   bool grown = false;
   StageEnd end = StageEnd::converged;
-  const Resumable part(work, "grow", [&](Archive& a) {
-    a(grown, end, edges, work.edges);
+  const Resumable part(report, "grow", [&](Archive& a) {
+    a(grown, end, edges, in_box.edges);
     if (grown) a(spheres);  // before that, they fly
   });
   const auto finish = [&] {
     // While it is polished, a checkpoint has what that began with.
     return finish_in_periodic_box<D>(options.polish > 0 ? spheres : std::move(spheres), edges, end,
-                                     options.polish, work);
+                                     options.polish, in_box, report);
   };
   if (grown) return finish();
-  if (!part.resumed()) start<D>(spheres, edges, work, options.phi_init.value_or(loose_start[D - 2]));
+  if (!part.resumed())
+    start<D>(spheres, edges, in_box, report, options.phi_init.value_or(loose_start[D - 2]));
   const double volume = edges.prod();
   double largest = std::numeric_limits<double>::infinity();
-  if (work.target_edges)
-    largest = std::max(1.0, std::pow(volume / work.target_edges->prod(), 1.0 / D)) * (1 + room_for_rounding);
-  const Arena<D> arena{edges_around_walls(edges, work.walls), walls_of(work, edges), volume};
-  end = grow_to<D>(largest, spheres, arena, work, options, [&](double size_now, double done) {
-          work.edges = edges / size_now;
-          work.milestone("grow", std::clamp(done, 0.0, 0.99), 0);
+  if (in_box.task.target_edges)
+    largest =
+        std::max(1.0, std::pow(volume / in_box.task.target_edges->prod(), 1.0 / D)) * (1 + room_for_rounding);
+  const Arena<D> arena{edges_around_walls(edges, in_box.task.walls), walls_of(in_box, edges), volume};
+  end = grow_to<D>(largest, spheres, arena, report, options, [&](double size_now, double done) {
+          in_box.edges = edges / size_now;
+          report.milestone("grow", in_box, 0, done);
         }).end;
-  free_of_overlap<D>(spheres, edges, work);
-  if (end != StageEnd::cancelled && stands_in_asked_box<D>(spheres, edges, work))
-    return end_in_larger_box(StageEnd::converged, options.polish, work);
+  free_of_overlap<D>(spheres, edges, in_box.task, report);
+  if (end != StageEnd::cancelled && stands_in_asked_box<D>(spheres, edges, in_box))
+    return end_in_larger_box(StageEnd::converged, options.polish, report);
   grown = true;
   return finish();
 }
@@ -185,28 +189,28 @@ double growth_rate(const Spheres<D>& spheres, double volume, const Grow& options
 }
 
 template <int D>
-Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Work& work, const Grow& options,
-              const std::function<void(double size, double done)>& report) {
-  HardSpheres<D> flight(spheres, arena.edges, work.random(Stream::grow),
+Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Reporter& report,
+              const Grow& options, const std::function<void(double size, double done)>& on_growth) {
+  HardSpheres<D> flight(spheres, arena.edges, report.random(Stream::grow),
                         {.walls = arena.walls, .masses = options.masses});
   const double rate = growth_rate<D>(spheres, arena.volume, options);
   StageEnd end = StageEnd::converged;
   double next_squeezed = 0, next_filled = 0;
   FlightPeriod period;
-  const Resumable part(work, "flight", [&](Archive& a) { a(flight, next_squeezed, next_filled, period); });
+  const Resumable part(report, "flight", [&](Archive& a) { a(flight, next_squeezed, next_filled, period); });
   while (flight.size() < largest && period.compressibility_factor < options.pressure) {
     if (!flight.has_room()) {
       end = StageEnd::hit_limit;
       break;
     }
-    if (work.stop()) {
+    if (report.stop()) {
       end = StageEnd::cancelled;
       break;
     }
     const bool in_haste = !options.delta && period.compressibility_factor < fluid * D;
-    period = flight.fly(in_haste ? haste_of_fluid * rate : rate, largest, work.monitor);
+    period = flight.fly(in_haste ? haste_of_fluid * rate : rate, largest, report.monitor);
     const auto count = [&](const char* effect, std::uint64_t calls) {
-      if (calls > 0) work.effects[effect].calls += calls;
+      if (calls > 0) report.effects[effect].calls += calls;
     };
     count("collisions", period.collisions);
     count("reflections", period.reflections);
@@ -220,11 +224,11 @@ Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Work& 
     if (squeezed < next_squeezed && filled < next_filled) continue;
     next_squeezed = squeezed + squeeze_a_milestone;
     next_filled = filled + volume_a_milestone;
-    report(flight.size(), std::max(filled, squeezed / std::log(options.pressure)));
+    on_growth(flight.size(), std::max(filled, squeezed / std::log(options.pressure)));
   }
   const FlightTimes& times = flight.times();
   const auto add_time = [&](const char* effect, double seconds) {
-    if (seconds > 0) work.effects[effect].seconds += seconds;
+    if (seconds > 0) report.effects[effect].seconds += seconds;
   };
   add_time("collisions", times.collisions.seconds());
   add_time("reflections", times.reflections.seconds());
@@ -232,13 +236,14 @@ Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Work& 
   flight.write_to(spheres);
   return {end, flight.size()};
 }
-template Grown grow_to<3>(double, Spheres<3>&, const Arena<3>&, Work&, const Grow&,
+template Grown grow_to<3>(double, Spheres<3>&, const Arena<3>&, Reporter&, const Grow&,
                           const std::function<void(double, double)>&);
 
-StageEnd grow(Work& work, const Grow& options) {
-  EffectTimer timer(work.effects["growth"]);
-  return with_dimension(work.dimension(), std::integer_sequence<int, 2, 3, 4, 5, 6>{},
-                        [&](auto dimension) { return grow_in<decltype(dimension)::value>(work, options); });
+StageEnd grow(const Grow& options, SpheresInBox& in_box, Reporter& report) {
+  EffectTimer timer(report.effects["growth"]);
+  return with_dimension(in_box.dimension(), std::integer_sequence<int, 2, 3, 4, 5, 6>{}, [&](auto dimension) {
+    return grow_in<decltype(dimension)::value>(in_box, report, options);
+  });
 }
 
 template <>
@@ -292,8 +297,8 @@ const StageEntry& entry_of<Grow>() {
             .frees_box = true,
             .joins_start = true,
             .reaches = Reaches::close_packing}),
-       .act_in_bed = act(grow_in_container),
-       .act_in_box = act(grow),
+       .act_in_bed = of_options(grow_in_container),
+       .act_in_box = of_options(grow),
        .may_bring = {"insertion", "neighbour shells", "collisions", "reflections", "growth", "polish"},
        .effects = of_options(effects_of_growth),
        .require = [](const void*, const Domain& container, double smallest_radius, const FillTask&) {

@@ -39,7 +39,7 @@ namespace bernal {
 /// image: 2.5 of the largest diameters, except along axes with walls. Throws Error{bad_scene} if it is too
 /// narrow at the start, or if phi_init is denser than random insertion reaches. Precondition: 2 to 6
 /// dimensions. Cost: about 2,000 collisions a sphere at 0.5 to 0.8 µs. One thread.
-StageEnd grow(Work& work, const Grow& options);
+StageEnd grow(const Grow& options, SpheresInBox& in_box, Reporter& report);
 
 /// Growth in a convex container with the drawn sizes: hard spheres fly, collide with each other and the
 /// walls, and grow in proportion until they have their radii (Lubachevsky & Stillinger, J. Stat. Phys. 60,
@@ -62,7 +62,7 @@ StageEnd grow(Work& work, const Grow& options);
 /// sphere at 0.5 to 0.8 µs; as much again after each removal. Han's cylinder (R = 1, H = 2, r = 0.0309): 0.60
 /// in 17 s, 0.62 in 24 s, for which relaxation takes 0.8 s and 2.7 s; 0.63 in 41 s, while relaxation ends at
 /// 0.6288 after 59 s. One thread.
-StageEnd grow_in_container(Work& work, const Grow& options);
+StageEnd grow_in_container(const Grow& options, SpheresInBed& in_bed, Reporter& report);
 
 /// Its effects with their prices.
 std::vector<PlanItem> effects_of_growth(const Grow& options, const Outlook& outlook);
@@ -87,7 +87,7 @@ struct Grown {
 /// or the box has become too narrow (hit_limit). Moves the centres; radii do not change. `report` is called
 /// now and then with the current size and progress.
 template <int D>
-Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Work& work, const Grow& options,
-              const std::function<void(double size, double done)>& report);
+Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Reporter& report,
+              const Grow& options, const std::function<void(double size, double done)>& on_growth);
 
 }  // namespace bernal

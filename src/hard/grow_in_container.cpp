@@ -11,8 +11,9 @@
 #include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "work/random_insertion.hpp"
+#include "work/reporter.hpp"
 #include "work/snug_places.hpp"
-#include "work/work.hpp"
+#include "work/spheres_in_bed.hpp"
 
 namespace bernal {
 namespace {
@@ -41,7 +42,7 @@ constexpr double share_for_rounding = 0.01;
 constexpr double margin = 3;
 
 /// Spheres on their way to their radii.
-struct Growing : Work::Drawn {
+struct Growing : FirstDrawn {
   double size = 1;     ///< the share of their radii that they have
   bool grown = false;  ///< they have reached them
 
@@ -50,15 +51,18 @@ struct Growing : Work::Drawn {
 
 class Growth {
  public:
-  Growth(Work& work, const Grow& options)
-      : work_(work),
+  Growth(SpheresInBed& in_bed, Reporter& report, const Grow& options)
+      : in_bed_(in_bed),
+        report_(report),
         options_(options),
-        random_(work.random(Stream::grow)),
-        full_size_(1 + (1 + share_for_rounding) * work.bed().skin() / work.supply->smallest()),
-        arena_{{}, walls_for_growth(work.domain, work.supply->smallest()), work.container->volume()} {
-    const Bounds<3> bounds = work.bed().container().bounds();
-    const Boundary<3>& boundary = work.bed().container().boundary();
-    arena_.edges = bounds.size().array() + margin * 2 * work.supply->largest();
+        random_(report.random(Stream::grow)),
+        full_size_(1 + (1 + share_for_rounding) * in_bed.bed().skin() / in_bed.supply->smallest()),
+        arena_{{},
+               walls_for_growth(in_bed.task.domain, in_bed.supply->smallest()),
+               in_bed.task.container->volume()} {
+    const Bounds<3> bounds = in_bed.bed().container().bounds();
+    const Boundary<3>& boundary = in_bed.bed().container().boundary();
+    arena_.edges = bounds.size().array() + margin * 2 * in_bed.supply->largest();
     to_box_ = 0.5 * arena_.edges - bounds.center();
     for (int k = 0; k < 3; ++k) {
       if (!boundary.repeats(k)) continue;
@@ -69,23 +73,23 @@ class Growth {
   }
 
   StageEnd run() {
-    const std::size_t wanted = work_.target_count();
-    if (work_.bed().size() >= wanted) return StageEnd::converged;
+    const std::size_t wanted = in_bed_.target_count();
+    if (in_bed_.bed().size() >= wanted) return StageEnd::converged;
     if (!fits_between_walls()) {
       complete(wanted);
-      return work_.bed().size() >= wanted ? StageEnd::converged : StageEnd::full;
+      return in_bed_.bed().size() >= wanted ? StageEnd::converged : StageEnd::full;
     }
-    Growing growing{work_.drawn(0)};
-    std::size_t count = std::min(wanted, work_.count_filling(most_of_attainable * work_.attainable));
+    Growing growing{in_bed_.drawn(0)};
+    std::size_t count = std::min(wanted, in_bed_.count_filling(most_of_attainable * in_bed_.task.attainable));
     bool first = true;
     Growing more;
-    const Resumable part(work_, "growth",
+    const Resumable part(report_, "growth",
                          [&](Archive& a) { a(growing, count, first, more, trims_, random_); });
     for (bool goes_on = part.resumed();;
          first = false, count = std::min(wanted, count + std::max<std::size_t>(1, count / 10))) {
       if (!std::exchange(goes_on, false)) {
         more = growing;
-        more.extend(count, *work_.supply);
+        more.extend(count, *in_bed_.supply);
         insert(more);
         trims_ = 0;
       }
@@ -94,38 +98,39 @@ class Growth {
       if (first || (more.grown && more.spheres.size() > growing.spheres.size())) growing = std::move(more);
       if (jammed || growing.spheres.size() >= wanted) break;
     }
-    const Keepsake before(work_);
-    const bool all_there = work_.put_in_bed(growing.spheres);
-    before.give_back_if_denser(work_);
+    const BedKeepsake before(in_bed_);
+    const bool all_there = in_bed_.put_in_bed(growing.spheres);
+    before.give_back_if_denser(in_bed_);
     if (cancelled_) return StageEnd::cancelled;
-    if (work_.bed().size() < wanted) complete(wanted);
-    if (work_.bed().size() >= wanted) return StageEnd::converged;
+    if (in_bed_.bed().size() < wanted) complete(wanted);
+    if (in_bed_.bed().size() >= wanted) return StageEnd::converged;
     return all_there ? StageEnd::full : StageEnd::hit_limit;
   }
 
  private:
   /// With those that the walls leave hardly any room, which are never as large as they have to be in flight.
   void complete(std::size_t wanted) {
-    SnugPlaces(work_).complete(volume_of(work_.drawn(wanted).spheres) / work_.container->volume());
+    const double volume = volume_of(in_bed_.drawn(wanted).spheres);
+    SnugPlaces(in_bed_, report_).complete(volume / in_bed_.task.container->volume());
   }
 
   /// Of analytic containers that is known beforehand; the walls of a mesh may be a little inside of it.
   bool fits_between_walls() const {
-    if (!std::holds_alternative<Mesh>(work_.domain)) return true;
+    if (!std::holds_alternative<Mesh>(in_bed_.task.domain)) return true;
     const LargestSphere largest = largest_sphere_between(arena_.walls, {Vector<3>::Zero(), arena_.edges});
-    if (work_.supply->largest() <= largest.radius) return true;
-    if (work_.supply->largest() <= (1 + 1e-9) * work_.roomiest().radius) return false;
+    if (in_bed_.supply->largest() <= largest.radius) return true;
+    if (in_bed_.supply->largest() <= (1 + 1e-9) * in_bed_.roomiest().radius) return false;
     throw Error(
         ErrorCode::bad_scene,
         fmt::format(
             "the largest sphere does not fit into the container, which takes one only {:.6g} times as "
             "large: use smaller ones or check the units",
-            largest.radius / work_.supply->largest()));
+            largest.radius / in_bed_.supply->largest()));
   }
 
   /// Finds places for all spheres that have none, and the size at which they do.
   void insert(Growing& growing) {
-    const EffectTimer timer(work_.effects["insertion"]);
+    const EffectTimer timer(report_.effects["insertion"]);
     const double filled = volume_of(growing.spheres) / arena_.volume;
     double phi = options_.phi_init.value_or(0.2);
     do {
@@ -140,22 +145,22 @@ class Growth {
   }
 
   bool try_to_insert(Growing& growing) {
-    const Container& container = work_.bed().container();
-    const double clear_of_walls = inset * flatness * work_.supply->smallest();
+    const Container& container = in_bed_.bed().container();
+    const double clear_of_walls = inset * flatness * in_bed_.supply->smallest();
     const bool all = insert_at_random<3>(
         growing.spheres, growing.placed, growing.size, container.bounds(), container.boundary(),
-        most_trials_between_walls, [&](double) { return work_.bed().places().draw(random_); },
+        most_trials_between_walls, [&](double) { return in_bed_.bed().places().draw(random_); },
         [&](const Vector<3>& c, double r) {
           return container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
         },
-        work_.monitor);
+        report_.monitor);
     if (all) growing.placed.assign(growing.spheres.size(), true);
     return all;
   }
 
   /// Lets them fly and grow until they have their radii, or jam. Returns whether they have.
   bool grow(Growing& growing) {
-    const EffectTimer timer(work_.effects["growth"]);
+    const EffectTimer timer(report_.effects["growth"]);
     Spheres<3> flying = growing.spheres;
     const Boundary<3> box{arena_.edges};
     for (std::size_t i = 0; i < flying.size(); ++i) {
@@ -165,8 +170,9 @@ class Growth {
     if (flying.empty()) return growing.grown = true;
     const double largest = full_size_ / growing.size;
     const auto [end, size] =
-        grow_to<3>(largest, flying, arena_, work_, options_, [&](double size_now, double done) {
-          work_.crowd_milestone("grow", flying.size(), std::pow(size_now, 3) * volume_of(flying), 0, done);
+        grow_to<3>(largest, flying, arena_, report_, options_, [&](double size_now, double done) {
+          const double volume = std::pow(size_now, 3) * volume_of(flying);
+          report_.milestone("grow", flying.size(), volume / in_bed_.task.container->volume(), 0, done);
         });
     cancelled_ = end == StageEnd::cancelled;
     for (std::size_t i = 0; i < flying.size(); ++i) growing.spheres.set_center(i, flying.center(i) - to_box_);
@@ -181,14 +187,16 @@ class Growth {
     while (trims_ < most_trims && !growing.grown && !cancelled_) {
       const double size = growing.size, volume = size * size * size * volume_of(growing.spheres);
       const double spare = std::ldexp(caution, trims_++);
-      const std::size_t fitting = work_.supply->count_filling((1 - spare) * volume);
+      const std::size_t fitting = in_bed_.supply->count_filling((1 - spare) * volume);
       growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
       growing.size *= 1 - shrinkage;
       grow(growing);
     }
   }
 
-  Work& work_;
+  SpheresInBed& in_bed_;
+
+  Reporter& report_;
   const Grow options_;
   Random random_;
   const double full_size_;  // at which spheres have their radii and the skin
@@ -204,19 +212,19 @@ std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radiu
   return convex_walls(shape, flatness * smallest_radius);
 }
 
-StageEnd grow_in_container(Work& work, const Grow& options) {
+StageEnd grow_in_container(const Grow& options, SpheresInBed& in_bed, Reporter& report) {
   StageEnd end = StageEnd::converged;
   bool is_grown = false;
-  const Resumable part(work, "grow in container", [&](Archive& a) { a(is_grown, end); });
+  const Resumable part(report, "grow in container", [&](Archive& a) { a(is_grown, end); });
   const auto grown = [&] {
     // What fits only touching the walls is never as large as it has to be in flight.
-    if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
-    const StageEnd growth = Growth(work, options).run();
-    return work.target.is_open() ? growth : insert_what_else_fits(work, growth);
+    if (SnugPlaces(in_bed, report).only_some_touch()) return insert_largest_first(in_bed, report);
+    const StageEnd growth = Growth(in_bed, report, options).run();
+    return in_bed.task.target.is_open() ? growth : insert_what_else_fits(in_bed, report, growth);
   };
   if (!is_grown) end = grown();
   is_grown = true;
-  return finish_in_bed(end, options.polish, work);
+  return finish_in_bed(end, options.polish, in_bed, report);
 }
 
 }  // namespace bernal

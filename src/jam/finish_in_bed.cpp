@@ -19,14 +19,14 @@ constexpr double least_overlap = 1e-10;
 constexpr int most_tries = 8;
 
 /// A bed with these spheres and all radii times `size`, or null if there is not room for all.
-std::shared_ptr<Bed> bed_of(const Spheres<3>& spheres, const std::vector<std::uint32_t>& tags, double size,
-                            Work& work) {
-  const Boundary<3>& boundary = work.container->boundary();
+std::unique_ptr<Bed> bed_of(const Spheres<3>& spheres, const std::vector<std::uint32_t>& tags, double size,
+                            const SpheresInBed& in_bed, EffectLog& effects) {
+  const Boundary<3>& boundary = in_bed.task.container->boundary();
   for (int k = 0; k < 3; ++k)
-    if (boundary.repeats(k) && boundary.edges[k] < Bed::least_period * 2 * size * work.supply->largest())
+    if (boundary.repeats(k) && boundary.edges[k] < Bed::least_period * 2 * size * in_bed.supply->largest())
       return nullptr;
-  const auto bed = std::make_shared<Bed>(*work.container, size * work.supply->smallest(),
-                                         size * work.supply->largest(), spheres.size(), work.effects);
+  auto bed = std::make_unique<Bed>(*in_bed.task.container, size * in_bed.supply->smallest(),
+                                   size * in_bed.supply->largest(), spheres.size(), effects);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     if (!bed->fits(spheres.center(i), size * spheres.r[i])) return nullptr;
     bed->insert(spheres.center(i), size * spheres.r[i], tags[i]);
@@ -36,53 +36,51 @@ std::shared_ptr<Bed> bed_of(const Spheres<3>& spheres, const std::vector<std::ui
 
 }  // namespace
 
-StageEnd finish_in_bed(StageEnd end, double polish, Work& work) {
-  const Bed& bed = work.bed();
+StageEnd finish_in_bed(StageEnd end, double polish, SpheresInBed& in_bed, Reporter& report) {
+  const Bed& bed = in_bed.bed();
   if (!(polish > 0) || end == StageEnd::cancelled || bed.size() == 0) return end;
-  const EffectTimer timer(work.effects["polish"]);
+  const EffectTimer timer(report.effects["polish"]);
   const Spheres<3> spheres = bed.spheres();
-  std::vector<std::uint32_t> tags;
-  for (Bed::Id i = 0; i < bed.size(); ++i) tags.push_back(bed.tag(i));
-  std::ranges::sort(tags);
+  const std::vector<std::uint32_t> tags = bed.tags();
   const double closest = std::max(least_overlap, share_of_solver * polish);
-  const int symmetries = symmetries_of(work.domain);
+  const int symmetries = symmetries_of(in_bed.task.domain);
   const Jammed jammed = polish_in_container(
-      spheres, bed.container(), symmetries, closest, work.monitor,
+      spheres, bed.container(), symmetries, closest, report.monitor,
       [&](double done, double overlap) {
-        work.crowd_milestone("polish", spheres.size(), volume_of(spheres), overlap, done);
+        const double filled = volume_of(spheres) / in_bed.task.container->volume();
+        report.milestone("polish", spheres.size(), filled, overlap, done);
       },
-      work.checkpoints);
+      report.checkpoints);
   if (jammed.end == StageEnd::cancelled) return jammed.end;
   if (jammed.too_loose) {
-    work.missed = fmt::format(
+    report.missed = fmt::format(
         "the spheres are not polished, because they would have to grow by more than {:g} % to hold each "
         "other: ask for more of them",
         100 * (Jammed::most_growth - 1));
     return StageEnd::hit_limit;
   }
-  const double skin = bed.skin() / work.supply->smallest();
+  const double skin = bed.skin() / in_bed.supply->smallest();
   for (int k = 0; k < most_tries; ++k) {
     const double room = std::ldexp(skin, k);  // for the skin
     const double size = jammed.growth * (1 - room);
-    const std::shared_ptr<Bed> polished = bed_of(jammed.spheres, tags, size, work);
+    std::unique_ptr<Bed> polished = bed_of(jammed.spheres, tags, size, in_bed, report.effects);
     if (!polished) continue;
-    work.supply->multiply_by(size);
-    work.size_scale *= size;
-    work.bed_ = polished;
+    in_bed.supply->multiply_by(size);
+    in_bed.replace_bed(std::move(polished));
     if (jammed.held_volume < 0.5) {
-      work.missed = fmt::format(
+      report.missed = fmt::format(
           "only {} of {} spheres hold each other: some are wedged in, mostly where the container is about as "
           "narrow as they are large, before sizes have grown so far that the others touch",
           jammed.held, spheres.size());
       return StageEnd::hit_limit;
     }
     const double gap = std::max(polish, closest + 2 * room);
-    const Spheres<3> now = polished->spheres();
+    const Spheres<3> now = in_bed.bed().spheres();
     const std::optional<std::string> open =
-        what_is_open(gap, 3, now.size(), symmetries, contacts_at(gap, now, polished->container()));
-    return end_of_polish(jammed.end == StageEnd::converged ? end : jammed.end, polish, open, work);
+        what_is_open(gap, 3, now.size(), symmetries, contacts_at(gap, now, in_bed.bed().container()));
+    return end_of_polish(jammed.end == StageEnd::converged ? end : jammed.end, polish, open, report);
   }
-  work.missed = "the spheres could not be polished";
+  report.missed = "the spheres could not be polished";
   return StageEnd::hit_limit;
 }
 

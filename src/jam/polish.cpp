@@ -46,7 +46,7 @@ constexpr double seconds_between_reports = 0.25;
 constexpr double balanced = 1e-2;
 
 /// What is polished, and for whom.
-struct Task {
+struct PolishTask {
   double tolerance;
   double slenderness;             ///< longest edge over smallest radius
   int symmetries;                 ///< motions of all spheres together that the walls do not feel
@@ -62,7 +62,7 @@ struct Task {
 template <int D>
 class Polish {
  public:
-  Polish(JammingEnergy<D> soft, Task task) : soft_(std::move(soft)), task_(std::move(task)) {
+  Polish(JammingEnergy<D> soft, PolishTask task) : soft_(std::move(soft)), task_(std::move(task)) {
     const auto n = static_cast<double>(soft_.size());
     balance_ = soft_.size() <= solved_closely ? close_balance : loose_balance;
     settled_ = std::min(1e-6, 0.1 / (n * n));
@@ -316,7 +316,7 @@ class Polish {
   }
 
   JammingEnergy<D> soft_;
-  const Task task_;
+  const PolishTask task_;
   double balance_, settled_;
   double start_ = gentlest_start;
   double imbalance_ = 0;
@@ -333,18 +333,20 @@ class Polish {
 }  // namespace
 
 template <int D>
-StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work) {
+StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, const SpheresInBox& in_box,
+                Reporter& report) {
   if (spheres.empty()) return StageEnd::converged;
-  const auto walls = static_cast<int>(std::ranges::count(work.walls, true));
+  const auto walls = static_cast<int>(std::ranges::count(in_box.task.walls, true));
   std::shared_ptr<const Enclosure<D>> enclosure;
-  if (walls > 0) enclosure = std::make_shared<Enclosure<D>>(edges, work.walls);
-  Polish<D> act({spheres, edges_around_walls(edges, work.walls), enclosure},
-                {.tolerance = tolerance,
-                 .slenderness = edges.maxCoeff() / std::ranges::min(spheres.r),
-                 .symmetries = D - walls,
-                 .monitor = work.monitor,
-                 .report = [&](double done, double overlap) { work.milestone("polish", done, overlap); },
-                 .checkpoints = work.checkpoints});
+  if (walls > 0) enclosure = std::make_shared<Enclosure<D>>(edges, in_box.task.walls);
+  Polish<D> act(
+      {spheres, edges_around_walls(edges, in_box.task.walls), enclosure},
+      {.tolerance = tolerance,
+       .slenderness = edges.maxCoeff() / std::ranges::min(spheres.r),
+       .symmetries = D - walls,
+       .monitor = report.monitor,
+       .report = [&](double done, double overlap) { report.milestone("polish", in_box, overlap, done); },
+       .checkpoints = report.checkpoints});
   const StageEnd end = act.run();
   act.soft().write(spheres);
   if (walls > 0)
@@ -376,7 +378,8 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
   return jammed;
 }
 
-#define BERNAL_INSTANTIATE(D) template StageEnd polish<D>(Spheres<D>&, Vector<D>&, double, Work&);
+#define BERNAL_INSTANTIATE(D) \
+  template StageEnd polish<D>(Spheres<D>&, Vector<D>&, double, const SpheresInBox&, Reporter&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

@@ -31,14 +31,15 @@ namespace bernal {
 /// spheres, more than half a minute for 3,000, more than a minute for 10,000. When cancelled, it ends within
 /// a step. Memory about 1 kB a sphere. One thread; the same bits each time.
 ///
-/// Along axes on which the box has walls, by `work.walls`, wall contacts count like any other, and dilate
+/// Along axes on which the box has walls, by `Task::walls`, wall contacts count like any other, and dilate
 /// with the box. In equilibrium the forces of C contacts satisfy D (N - rattlers) balance equations, less one
 /// for each common motion of all spheres that no wall prevents (D shifts in a periodic box, one for each axis
 /// without walls otherwise). Under pressure there is exactly one solution, so
 ///   C = D (N - rattlers) - symmetries + 1:
 /// the isostatic number, for frictionless spheres under nothing but the pressure.
 template <int D>
-StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, Work& work);
+StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, const SpheresInBox& in_box,
+                Reporter& report);
 
 /// The key of a stage that ends with polishing.
 template <class Options>
@@ -78,29 +79,30 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
                            Checkpoints* checkpoints = nullptr);
 
 /// The end of every stage that packs a bed: polishes contacts to gap ratios below `polish`, if that is above
-/// 0, or to the skin of the bed if that is wider. All sizes grow by one factor, stored in `work.size_scale`
+/// 0, or to the skin of the bed if that is wider. All sizes grow by one factor, stored in `Supply::scale`
 /// for later stages. Returns `end`, or the reason why polishing ended. A bed too loose to be polished does
-/// not change, and `work.missed` says so; this includes a bed in which a few spheres, wedged between walls,
+/// not change, and `Reporter::missed` says so; this includes a bed in which a few spheres, wedged between walls,
 /// stop the growth while the rest is loose. Closed contacts are counted on the final positions
 /// (`what_is_open`).
-StageEnd finish_in_bed(StageEnd end, double polish, Work& work);
+StageEnd finish_in_bed(StageEnd end, double polish, SpheresInBed& in_bed, Reporter& report);
 
 /// The end of every stage with a box that follows from the packing: polishes contacts to the overlap ratio
 /// `polish`, if that is above 0; scales the box until nothing overlaps more than allowed; moves the spheres
 /// apart in proportion if the scene asks for a larger box; and stores all in `work`. Returns `end`, or the
-/// reason why polishing ended; `work.missed` says what is open, by the final positions (`what_is_open`) or
+/// reason why polishing ended; `Reporter::missed` says what is open, by the final positions (`what_is_open`) or
 /// because of the larger box. Cost: a search of all near pairs, and `polish`.
 template <int D>
-StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish, Work& work);
+StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish,
+                                SpheresInBox& in_box, Reporter& report);
 
 /// The end of a stage that polished to `polish` with the result `end`; `open` states which contacts are open.
-/// Contacts that do not hold the spheres mean not converged, whatever the solver returned; `work.missed` says
+/// Contacts that do not hold the spheres mean not converged, whatever the solver returned; `Reporter::missed` says
 /// so.
-StageEnd end_of_polish(StageEnd end, double polish, const std::optional<std::string>& open, Work& work);
+StageEnd end_of_polish(StageEnd end, double polish, const std::optional<std::string>& open, Reporter& report);
 
 /// The end of a stage whose box is larger than the spheres need: if `polish` is above 0, contacts that should
-/// be closed are open, and `work.missed` says so.
-StageEnd end_in_larger_box(StageEnd end, double polish, Work& work);
+/// be closed are open, and `Reporter::missed` says so.
+StageEnd end_in_larger_box(StageEnd end, double polish, Reporter& report);
 
 /// Whether a box of these edges fits the target edges, including the rounding of moving to them.
 template <int D>

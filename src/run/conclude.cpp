@@ -58,7 +58,7 @@ std::string larger(double factor) {
 
 /// Where it is left open how many spheres there are: what the stages place is what was asked for, unless it
 /// is far from what was to be expected.
-Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
+Conclusion of_open_target(const Packing& packing, bool fills, StageEnd end, const Ending& ending) {
   const std::size_t n = packing.spheres.size();
   const Plan& plan = ending.plan;
   const double phi = packing.packing_fraction(), expected = packing.expected_packing_fraction;
@@ -79,7 +79,7 @@ Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end
   std::string guess;  // where walls are everywhere
   if (const auto error = give_or_take(plan); error && !plan.scene.target.bed.gives_height())
     guess = fmt::format(", give or take {}: fill = true may place more", grouped(*error));
-  if (end == StageEnd::converged && !work.target.fill && ending.places_expected)
+  if (end == StageEnd::converged && !fills && ending.places_expected)
     return {Outcome::converged,
             fmt::format("{} {} placed, as many as were expected to fit{}", counted(n), are(n), guess)};
   // What relaxation is known to reach and did not is not what was to be there.
@@ -100,22 +100,26 @@ Conclusion of_open_target(const Packing& packing, const Work& work, StageEnd end
 }
 
 /// In a box all spheres are wanted, and have places together.
-Conclusion of_box(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
+Conclusion of_box(const Packing& packing, const SpheresInBox& in_box, const Reporter& report, StageEnd end,
+                  const Ending& ending) {
+  const Target& target = in_box.task.target;
+  const std::optional<Vector<dynamic>>& asked = in_box.task.target_edges;
   const std::size_t n = packing.spheres.size();
-  const std::string account = work.account.empty() ? "" : " " + work.account;
-  const bool from_bed = work.container && work.target.is_open();
-  if (const std::size_t wanted = work.supply->wanted(); packing.spheres.size() < wanted && !from_bed)
+  const std::string account = report.account.empty() ? "" : " " + report.account;
+  const bool from_bed = in_box.task.container && target.is_open();
+  if (const std::size_t wanted = in_box.supply->wanted(); packing.spheres.size() < wanted && !from_bed)
     return {end == StageEnd::full ? Outcome::full : Outcome::hit_limit,
             fmt::format("{}, packing fraction {:.4f}{}", some_placed(n, wanted), packing.packing_fraction(),
                         account)};
-  if (work.target_edges && work.edges != *work.target_edges)
+  if (asked && in_box.edges != *asked)
     return {Outcome::full,
             fmt::format("{} {} a box {} the one asked for; this is the box that {}", counted(n),
-                        n == 1 ? "needs" : "need", larger(work.edges.prod() / work.target_edges->prod()),
+                        n == 1 ? "needs" : "need", larger(in_box.edges.prod() / asked->prod()),
                         n == 1 ? "it needs" : "they need")};
-  if (!work.missed.empty()) return {Outcome::hit_limit, fmt::format("{}; {}", all_placed(n), work.missed)};
+  if (!report.missed.empty())
+    return {Outcome::hit_limit, fmt::format("{}; {}", all_placed(n), report.missed)};
   if (end == StageEnd::hit_limit) return limit_reached(n);
-  if (from_bed) return of_open_target(packing, work, end, ending);
+  if (from_bed) return of_open_target(packing, target.fill, end, ending);
   return {Outcome::converged, all_placed(n) + account};
 }
 
@@ -129,17 +133,18 @@ void admit_shortfall(Conclusion& conclusion, const Packing& packing, const Plan&
 }
 
 /// In a bed they come one after the other, until the target is reached or no place is left.
-Conclusion of_bed(const Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
-  const Target& target = work.target;
+Conclusion of_bed(const Packing& packing, const SpheresInBed& in_bed, const Reporter& report, StageEnd end,
+                  const Ending& ending) {
+  const Target& target = in_bed.task.target;
   const std::size_t n = packing.spheres.size();
-  if (!work.missed.empty())
-    return {Outcome::hit_limit, fmt::format("{} {} placed; {}", counted(n), are(n), work.missed)};
-  if (!target.is_open() && work.supply->exhausted()) {
+  if (!report.missed.empty())
+    return {Outcome::hit_limit, fmt::format("{} {} placed; {}", counted(n), are(n), report.missed)};
+  if (!target.is_open() && in_bed.supply->exhausted()) {
     if (!ending.pressed || end != StageEnd::hit_limit) return {Outcome::converged, all_placed(n)};
     return {Outcome::hit_limit, all_placed(n) + ", but the last stage reached its limit"};
   }
   if (end == StageEnd::hit_limit) return limit_reached(n);
-  if (target.is_open()) return of_open_target(packing, work, end, ending);
+  if (target.is_open()) return of_open_target(packing, target.fill, end, ending);
   if (target.count)
     return {Outcome::full,
             fmt::format("{}; {}", some_placed(n, static_cast<std::size_t>(*target.count)), why_no_more(end))};
@@ -185,8 +190,7 @@ std::string resized(double size_scale) {
 }
 
 /// What was left out of the drawn sequence.
-std::string left_out(const Packing& packing, const Work& work, double unit) {
-  const Supply& supply = *work.supply;
+std::string left_out(const Packing& packing, const Supply& supply, double unit) {
   const double shown = (packing.scene.sizes_are_diameters ? 2 : 1) * unit;
   const double coat = coat_of(packing.scene) / unit;
   const auto size = [&](double with_coat) {
@@ -218,19 +222,24 @@ std::string left_out(const Packing& packing, const Work& work, double unit) {
 
 }  // namespace
 
-void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& ending) {
-  const bool in_bed = work.stands_in_bed();
-  Conclusion conclusion = in_bed ? of_bed(packing, work, end, ending) : of_box(packing, work, end, ending);
+void conclude(Packing& packing, const SpheresOfRun& spheres, const Reporter& report, StageEnd end,
+              const Ending& ending) {
+  const auto* in_bed = std::get_if<SpheresInBed>(&spheres);
+  const auto* in_box = std::get_if<SpheresInBox>(&spheres);
+  const Supply& supply = *supply_of(spheres);
+  Conclusion conclusion =
+      in_bed ? of_bed(packing, *in_bed, report, end, ending) : of_box(packing, *in_box, report, end, ending);
   if (!in_bed && end != StageEnd::cancelled) admit_shortfall(conclusion, packing, ending.plan);
   if (ending.pressed && end != StageEnd::cancelled) tell_rest(conclusion, packing, *ending.pressed);
   if (end == StageEnd::cancelled) {
-    const bool short_of = !in_bed && packing.spheres.size() < work.supply->wanted();
+    const bool short_of = !in_bed && packing.spheres.size() < supply.wanted();
     conclusion = {Outcome::cancelled,
                   short_of ? "stopped by the user: " + conclusion.reason
                            : fmt::format("stopped by the user with {}", counted(packing.spheres.size()))};
-    if (!in_bed && work.target_edges && work.edges.prod() > work.target_edges->prod())
-      conclusion.reason += fmt::format(", which stand in a box {} the one asked for",
-                                       larger(work.edges.prod() / work.target_edges->prod()));
+    const double asked = in_box && in_box->task.target_edges ? in_box->task.target_edges->prod() : 0;
+    if (asked > 0 && in_box->edges.prod() > asked)
+      conclusion.reason +=
+          fmt::format(", which stand in a box {} the one asked for", larger(in_box->edges.prod() / asked));
   } else if (packing.spheres.empty()) {
     conclusion = {
         conclusion.outcome == Outcome::hit_limit ? Outcome::hit_limit : Outcome::full,
@@ -240,9 +249,9 @@ void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& en
   }
   packing.outcome = conclusion.outcome;
   packing.reason =
-      conclusion.reason + (in_bed && !work.account.empty() ? "; " + work.account : std::string()) +
+      conclusion.reason + (in_bed && !report.account.empty() ? "; " + report.account : std::string()) +
       (in_bed ? resized(packing.size_scale) : std::string()) +
-      (in_bed && end != StageEnd::cancelled ? left_out(packing, work, ending.unit) : std::string());
+      (in_bed && end != StageEnd::cancelled ? left_out(packing, supply, ending.unit) : std::string());
 }
 
 }  // namespace bernal

@@ -1,7 +1,8 @@
 #pragma once
 #include "bernal/scene/packing.hpp"
 #include "run/last_pressed.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_box.hpp"
 
 namespace bernal {
 
@@ -19,6 +20,7 @@ struct Ending {
 /// How the last stage's end, what stands where, and what the scene asked for make the outcome of the run and
 /// the sentence behind it. The packing has its spheres and what was expected of them already. Of spheres that
 /// were pressed last it tells how many do not rest, and is not converged where any do.
-void conclude(Packing& packing, const Work& work, StageEnd end, const Ending& ending);
+void conclude(Packing& packing, const SpheresOfRun& spheres, const Reporter& report, StageEnd end,
+              const Ending& ending);
 
 }  // namespace bernal

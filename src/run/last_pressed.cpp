@@ -28,9 +28,7 @@ std::optional<Pressing> pressing(const Stage& stage) {
 }
 
 /// Of spheres that do not stand in a bed: none.
-std::string hash_of_bed(const Work& work) {
-  return work.stands_in_bed() ? hash_of(work.bed().spheres_as_packed()) : std::string();
-}
+std::string hash_of_bed(const Bed* bed) { return bed ? hash_of(bed->spheres_as_packed()) : std::string(); }
 
 }  // namespace
 
@@ -55,25 +53,27 @@ LastPressed::LastPressed(const Scene& scene)
       any_settles_(
           std::ranges::any_of(scene.stages, [](const Stage& s) { return pressing(s).has_value(); })) {}
 
-void LastPressed::before_stage(const Work& work) {
-  if (by_) spheres_before_ = hash_of_bed(work);
+void LastPressed::before_stage(const Bed* bed) {
+  if (by_) spheres_before_ = hash_of_bed(bed);
 }
 
-void LastPressed::after_stage(std::size_t stage, const Work& work) {
+void LastPressed::after_stage(std::size_t stage, const Bed* bed) {
   if (pressing(scene_.stages[stage]))
     by_ = stage;
-  else if (by_ && (spheres_before_.empty() || hash_of_bed(work) != spheres_before_))
+  else if (by_ && (spheres_before_.empty() || hash_of_bed(bed) != spheres_before_))
     by_.reset();
 }
 
 std::optional<Pressing> LastPressed::by() const { return by_ ? pressing(scene_.stages[*by_]) : std::nullopt; }
 
-StageEnd leave_out_tail(Work& work, StageEnd end, const std::optional<Pressing>& pressed) {
-  const Supply& supply = *work.supply;
-  if (!work.stands_in_bed() || supply.passed_over() == 0 || !supply.trimming_is_cheap()) return end;
-  work.bed().remove_tags_from(supply.first_missing());
+StageEnd leave_out_tail(SpheresInBed& in_bed, Reporter& report, StageEnd end,
+                        const std::optional<Pressing>& pressed) {
+  const Supply& supply = *in_bed.supply;
+  if (supply.passed_over() == 0 || !supply.trimming_is_cheap()) return end;
+  in_bed.bed().remove_tags_from(supply.first_missing());
   if (!pressed || end == StageEnd::cancelled) return end;
-  const StageEnd settled = roll_to_rest(work, pressed->direction, {.friction = pressed->friction});
+  const StageEnd settled =
+      roll_to_rest(in_bed.bed(), report, pressed->direction, {.friction = pressed->friction});
   return settled == StageEnd::converged ? end : settled;
 }
 

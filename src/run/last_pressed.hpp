@@ -5,7 +5,8 @@
 
 #include "bernal/scene/scene.hpp"
 #include "core/archive.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_bed.hpp"
 
 namespace bernal {
 
@@ -24,8 +25,9 @@ class LastPressed {
  public:
   explicit LastPressed(const Scene& scene);
 
-  void before_stage(const Work& work);
-  void after_stage(std::size_t stage, const Work& work);
+  /// The bed that the stage works in, or null where it works in a box.
+  void before_stage(const Bed*);
+  void after_stage(std::size_t stage, const Bed*);
   /// Nothing: by none.
   std::optional<Pressing> by() const;
 
@@ -44,6 +46,7 @@ class LastPressed {
 /// Takes the few spheres out again that stand beyond one which found no place, where that makes the drawn
 /// sequence whole, less its tail. What they supported rolls to rest anew. Returns how the
 /// stages end with that.
-StageEnd leave_out_tail(Work& work, StageEnd end, const std::optional<Pressing>& pressed);
+StageEnd leave_out_tail(SpheresInBed& in_bed, Reporter& report, StageEnd end,
+                        const std::optional<Pressing>& pressed);
 
 }  // namespace bernal

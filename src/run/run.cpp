@@ -23,13 +23,13 @@
 #include "run/checkpoint_owner.hpp"
 #include "run/conclude.hpp"
 #include "run/exact_place.hpp"
-#include "run/last_pressed.hpp"
 #include "run/run_record.hpp"
+#include "run/run_stages.hpp"
 #include "run/take_coats_off.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/counted_container.hpp"
-#include "work/exact_fit.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_box.hpp"
 
 namespace bernal {
 
@@ -79,10 +79,14 @@ class Run {
         checkpoints_(options.monitor, options.checkpoints,
                      options.checkpoints.folder.empty() ? CheckpointOwner()
                                                         : checkpoint_owner(plan.scene, packing.seed),
-                     [this](Archive& a) { record_.archive(a, work_); }) {}
+                     [this](Archive& a) { record_.archive(a, report_); }) {}
 
   /// As far as the first stage begins.
-  void check() { start(any_in_bed_ ? Supply::densest : plan_.expected_packing_fraction, false); }
+  void check() {
+    Task task;
+    Reporter report = begin_report();
+    start(any_in_bed_ ? Supply::densest : plan_.expected_packing_fraction, task, report, false);
+  }
 
   void go() {
     try {
@@ -103,18 +107,22 @@ class Run {
     // What is told of the run so far comes first, that effects are in its order, and last, as it was.
     const Checkpoints::Part part(checkpoints_, "run", [&](Archive& a) {
       a(attempt, fraction);
-      record_.archive(a, work_);
+      record_.archive(a, report_);
     });
     for (;; ++attempt) {
-      Work work = start(fraction);
-      const StageEnd end = run_stages(work);
-      if (const std::optional<double> other = other_fraction(work, end, attempt)) {
+      Task task;
+      Reporter report = begin_report();
+      SpheresOfRun spheres = start(fraction, task, report);
+      report_ = &report;
+      const StageEnd end = run_stages(scene_, spheres, report, checkpoints_, pressed_);
+      report_ = nullptr;
+      if (const std::optional<double> other = other_fraction(spheres, end, attempt)) {
         fraction = *other;
         continue;
       }
-      hand_over(work);
+      hand_over(spheres);
       packing_.expected_of_sizes = expected_of_sizes(packing_);
-      conclude(packing_, work, end, ending());
+      conclude(packing_, spheres, report, end, ending());
       return;
     }
   }
@@ -131,56 +139,61 @@ class Run {
             .pressed = pressed_};
   }
 
-  /// The drawn sequence, the frame that follows from it, and no sphere in its place.
-  Work start(double fraction, bool with_engine = true) {
+  Reporter begin_report() {
+    return {.seed = packing_.seed,
+            .monitor = monitor_,
+            .effects = record_.effects(),
+            .on_progress = [this](const StageProgress& progress) { tell(progress); },
+            .checkpoints = checkpoints_.keeps() ? &checkpoints_ : nullptr};
+  }
+
+  /// The drawn sequence and the frame that follows from it; places have the spheres of a start, or those that
+  /// an engine has moved. Says what the task of the stages is, which outlives the spheres.
+  SpheresOfRun start(double fraction, Task& task, Reporter& report, bool with_engine = true) {
     const Interruptible listening(monitor_);
-    Work work{.spheres = Spheres<dynamic>(dimension_of(plan_.domain)),
-              .edges = bounds_of<dynamic>(plan_.domain).size(),
-              .allowed_overlap = scene_.overlap,
-              .target = scene_.target,
-              .attainable = plan_.attainable_packing_fraction,
-              .close_packing = scene_.target.bed.density ? random_close_packing_of(plan_) : 0,
-              .seed = packing_.seed,
-              .monitor = monitor_,
-              .effects = record_.effects(),
-              .on_course = [this](const Course& course) { tell(course); },
-              .checkpoints = checkpoints_.keeps() ? &checkpoints_ : nullptr};
-    Supply::Source source{*stated_.radii, work.dimension(), packing_.seed, *scene_.draw};
+    task = {.target = scene_.target,
+            .allowed_overlap = scene_.overlap,
+            .attainable = plan_.attainable_packing_fraction,
+            .close_packing = scene_.target.bed.density ? random_close_packing_of(plan_) : 0};
+    const int dimension = dimension_of(plan_.domain);
+    const Vector<dynamic> edges = bounds_of<dynamic>(plan_.domain).size();
+    Supply::Source source{*stated_.radii, dimension, packing_.seed, *scene_.draw};
     source.first = stated_.start.spheres.r;
     source.coat = coat_of(scene_);
     double volume = volume_of(plan_.domain);
+    std::shared_ptr<Supply> supply;
     if (scene_.is_periodic()) {
       if (any_in_bed_ && !std::isfinite(source.radii.max()))
         source.cut = tail_cut(scene_, plan_.domain, *plan_.radii);
-      work.supply = supply_from(source, volume, fraction);
-      frame_ = frame_of_box(work.edges, work.supply->largest());
+      supply = supply_from(source, volume, fraction);
+      frame_ = frame_of_box(edges, supply->largest());
     } else {
       frame_ = frame_for(scene_, plan_.domain, *plan_.radii);
-      work.domain = to_local(plan_.domain, frame_);
+      task.domain = to_local(plan_.domain, frame_);
       std::shared_ptr<const Container> made = plan_.container;
-      if (!made) made = make_container(work.domain, scene_.walls, frame_.resolution);
-      work.container = counted(std::move(made));
-      volume = std::pow(frame_.scale, work.dimension()) * work.container->volume();
+      if (!made) made = make_container(task.domain, scene_.walls, frame_.resolution);
+      task.container = counted(std::move(made));
+      volume = std::pow(frame_.scale, dimension) * task.container->volume();
       if (!std::isfinite(source.radii.max()))
         source.cut = tail_cut(scene_, plan_.domain, *plan_.radii, plan_.container);
-      work.supply = supply_from(source, volume, fraction);
+      supply = supply_from(source, volume, fraction);
     }
     if (!plan_.box_follows) {
       const double allowed = has_walls(plan_.domain) ? 0 : scene_.overlap;
-      require_fitting(scene_, plan_.domain, plan_.container, (1 - allowed) * work.supply->largest());
+      require_fitting(scene_, plan_.domain, plan_.container, (1 - allowed) * supply->largest());
     }
-    if (any_in_bed_) require_long_periods(scene_, plan_.domain, work.supply->largest());
-    work.supply->divide_by(frame_.scale);
-    work.target.bed.above_ground /= frame_.scale;
+    if (any_in_bed_) require_long_periods(scene_, plan_.domain, supply->largest());
+    supply->divide_by(frame_.scale);
+    task.target.bed.above_ground /= frame_.scale;
     if (any_in_bed_)
-      work.exact_place = [this](const Vector<3>& place, double r) { return exact_place_.near(place, r); };
-    if (scene_.is_periodic()) put_into_box(work);
-    take_start(plan_, frame_, work);
-    if (scene_.engine && with_engine) take_engine(plan_, engine_folder_, work);
+      task.exact_place = [this](const Vector<3>& place, double r) { return exact_place_.near(place, r); };
     if (with_room_)
-      share_ = share_of_drawn(*work.supply, work.dimension()) * volume_of(plan_.domain) /
-               volume_of(stated_.domain);
-    return work;
+      share_ = share_of_drawn(*supply, dimension) * volume_of(plan_.domain) / volume_of(stated_.domain);
+    if (scene_.is_periodic()) describe_box(task, edges / frame_.scale);
+    SpheresOfRun spheres = begin(task, std::move(supply), edges / frame_.scale);
+    take_start(plan_, frame_, spheres, report);
+    if (scene_.engine && with_engine) take_engine(plan_, engine_folder_, spheres, report);
+    return spheres;
   }
 
   /// Walls that stages may ask.
@@ -197,150 +210,83 @@ class Run {
                                     fraction);
   }
 
-  /// All spheres of the sequence, in a box of the plan's proportions, with the edges that the scene asks for.
-  void put_into_box(Work& work) {
+  /// What stages are asked about a periodic box, as the plan has it, of these edges.
+  void describe_box(Task& task, const Vector<dynamic>& edges) {
     const Box& box = std::get<Box>(plan_.domain);
-    work.edges /= frame_.scale;
-    work.domain = Box{box.corner / frame_.scale, work.edges, box.periodic};
+    task.domain = Box{box.corner / frame_.scale, edges, box.periodic};
     if (box.has_walls()) {
-      work.walls = box.periodic;
-      work.walls.flip();
+      task.walls = box.periodic;
+      task.walls.flip();
     }
-    if (any_in_bed_) {
-      work.container = counted(make_container(work.domain, scene_.walls, frame_.resolution));
-      work.target_edges = work.edges;
-      work.fill_task = fill_task_of(plan_);
-      if (table_of(scene_.stages.front()).traits.stands_in_bed(scene_)) return;
-    }
-    work.spheres.resize(work.supply->wanted());
-    work.spheres.r = work.supply->radii();
-    const std::optional<double> phi = scene_.target.packing_fraction;
-    if (!plan_.box_follows) {
-      work.target_edges = work.edges;
-    } else if (phi) {
-      work.target_edges = edges_filled_to(*phi, work);
-    }
-    work.fill_task = fill_task_of(plan_);
+    if (any_in_bed_) task.container = counted(make_container(task.domain, scene_.walls, frame_.resolution));
+    if (any_in_bed_ || !plan_.box_follows) task.target_edges = edges;
+    task.fill_task = fill_task_of(plan_);
+  }
+
+  /// An empty bed, or all spheres of the sequence in a box of these proportions, without places. Where the
+  /// scene asks for a packing fraction the task then says with which edges the box is to end.
+  SpheresOfRun begin(Task& task, std::shared_ptr<Supply> supply, const Vector<dynamic>& edges) {
+    if (table_of(scene_.stages.front()).traits.stands_in_bed(scene_))
+      return SpheresInBed(task, std::move(supply), record_.effects());
+    SpheresInBox in_box{.task = task,
+                        .supply = std::move(supply),
+                        .spheres = Spheres<dynamic>(dimension_of(plan_.domain)),
+                        .edges = edges};
+    in_box.begin_with(in_box.supply->wanted());
+    if (const std::optional<double> phi = scene_.target.packing_fraction; phi && plan_.box_follows)
+      task.target_edges = edges_filled_to(*phi, in_box);
+    return in_box;
   }
 
   /// Edges of the box's proportions that the spheres fill to what the scene asks for.
-  Vector<dynamic> edges_filled_to(double phi, const Work& work) const {
-    const double dimension = work.dimension();
-    const double volume = work.volume_of_spheres() / phi;
-    if (!with_room_) return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
-    const double drawn = work.volume_of_spheres() * share_of_drawn(*work.supply, work.dimension());
-    const Vector<dynamic> around = edges_around(scene_, work.edges * frame_.scale) / frame_.scale;
+  Vector<dynamic> edges_filled_to(double phi, const SpheresInBox& in_box) const {
+    const double dimension = in_box.dimension();
+    const Vector<dynamic>& edges = in_box.edges;
+    const double volume = in_box.volume_of_spheres() / phi;
+    if (!with_room_) return edges * std::pow(volume / edges.prod(), 1.0 / dimension);
+    const double drawn = in_box.volume_of_spheres() * share_of_drawn(*in_box.supply, in_box.dimension());
+    const Vector<dynamic> around = edges_around(scene_, edges * frame_.scale) / frame_.scale;
     const double stated = drawn / *stated_.scene.target.packing_fraction;
     return edges_within(scene_, frame_.scale * around * std::pow(stated / around.prod(), 1.0 / dimension)) /
            frame_.scale;
   }
 
-  StageEnd run_stages(Work& work) {
-    StageEnd end = StageEnd::converged;
-    std::size_t n = 0;            // stages that are over
-    std::string facts;            // as the present one began
-    std::optional<Keepsake> bed;  // in a box all may have to start anew
-    LastPressed pressed(scene_);
-    work_ = &work;
-    const Checkpoints::Part part(checkpoints_, "stages", [&](Archive& a) {
-      bool in_bed = work.stands_in_bed();
-      a(n, end, facts, in_bed, bed);
-      pressed.archive(a);
-      if (a.reads()) {
-        ArchiveFromBytes then(facts);
-        work.archive_facts(then);
-      }
-      if (in_bed) {
-        work.archive_bed(a);
-        return;
-      }
-      work.bed_ = nullptr;
-      if (n > 0) a(work.spheres);  // which the first stage begins with as they were drawn
-    });
-    for (bool goes_on = part.resumed(); n < scene_.stages.size(); ++n) {
-      const Stage& stage = scene_.stages[n];
-      const bool in_bed = table_of(stage).traits.stands_in_bed(scene_);
-      if (!std::exchange(goes_on, false)) {
-        bed.reset();
-        if (!in_bed && work.stands_in_bed()) bed.emplace(work);
-        in_bed ? work.stand_in_bed() : work.stand_in_box();
-        work.missed.clear();
-        facts.clear();
-        ArchiveToBytes now(facts);
-        work.archive_facts(now);
-        pressed.before_stage(work);
-      }
-      const Keepsake before(work);
-      if (work.stands_in_bed()) work.bed().update_grid();  // of the places that the stage before left
-      end = run_stage(stage, work);
-      if (end == StageEnd::cancelled && !work.may_overlap) before.give_back_if_denser(work);
-      if (end == StageEnd::cancelled && bed) bed->give_back_if_denser(work);
-      if (end == StageEnd::cancelled && !work.stands_in_bed() && !work.placed) work.spheres.resize(0);
-      work.begun = 0;
-      work.may_overlap = false;
-      work.crowded_start = {};
-      pressed.after_stage(n, work);
-      if (in_bed) work.milestone(stage.name());
-      if (end == StageEnd::cancelled) break;
-    }
-    if (end != StageEnd::cancelled) {
-      if (!work.stands_in_bed() && work.spheres.size() == work.supply->wanted()) fit_exactly(work);
-      facts.clear();
-      ArchiveToBytes now(facts);
-      work.archive_facts(now);
-      checkpoints_.write_if_long();
-    }
-    pressed_ = pressed.by();
-    end = leave_out_tail(work, end, pressed_);
-    work_ = nullptr;
-    return end;
-  }
-
-  /// What a stage cannot do, only it knows; where the scene asks for it, only the run.
-  static StageEnd run_stage(const Stage& stage, Work& work) {
-    const StageEntry& entry = entry_of(stage);
-    try {
-      const auto& act = work.stands_in_bed() ? entry.act_in_bed : entry.act_in_box;
-      return act(entry.table.options(stage), work);
-    } catch (const Cancelled&) {
-      return StageEnd::cancelled;
-    } catch (const Error& error) {
-      if (!error.location().file.empty()) throw;
-      throw Error(error.code(), error.what(), stage.locations.whole);
-    }
-  }
-
   /// Where it is left open how many spheres a box of given size takes, and the stages put all in their places
   /// or none: what to try next, unless the last try will do.
-  std::optional<double> other_fraction(const Work& work, StageEnd end, int attempt) const {
+  std::optional<double> other_fraction(const SpheresOfRun& spheres, StageEnd end, int attempt) const {
     if (any_in_bed_ || !scene_.target.is_open() || plan_.box_follows || end == StageEnd::cancelled) return {};
-    const bool fits = work.edges == *work.target_edges;
-    const bool roomy = attempt == 1 && fits && work.needed_volume < (1 - too_much_room) * work.edges.prod();
+    const auto& in_box = std::get<SpheresInBox>(spheres);
+    const bool fits = in_box.edges == *in_box.task.target_edges;
+    const bool roomy =
+        attempt == 1 && fits && in_box.needed_volume < (1 - too_much_room) * in_box.edges.prod();
     if ((fits && !roomy) || attempt == most_attempts) return {};
-    return work.volume_of_spheres() / work.needed_volume * (1 - std::ldexp(caution, attempt - 1));
+    return in_box.volume_of_spheres() / in_box.needed_volume * (1 - std::ldexp(caution, attempt - 1));
   }
 
   /// Back into the scene's unit and place, in the order of the drawn sequence.
-  void hand_over(Work& work) {
-    packing_.spheres = work.stands_in_bed() ? work.bed().spheres_as_packed() : std::move(work.spheres);
+  void hand_over(SpheresOfRun& in_frame) {
+    const Supply& supply = *supply_of(in_frame);
+    auto* in_box = std::get_if<SpheresInBox>(&in_frame);
+    packing_.spheres = in_box ? std::move(in_box->spheres) : bed_of(in_frame)->spheres_as_packed();
     Spheres<dynamic>& spheres = packing_.spheres;
     for (int k = 0; k < spheres.dimension(); ++k) {
       const double origin = k < 3 ? frame_.origin[k] : 0;
       for (double& x : spheres.x[static_cast<std::size_t>(k)]) x = origin + frame_.scale * x;
     }
-    packing_.size_scale =
-        with_room_ ? take_coats_off(spheres.r, *work.supply, coat_of(scene_) / frame_.scale, work.size_scale)
-                   : work.size_scale;
+    packing_.size_scale = with_room_
+                              ? take_coats_off(spheres.r, in_box ? in_box->tags : bed_of(in_frame)->tags(),
+                                               supply, coat_of(scene_) / frame_.scale)
+                              : supply.scale();
     for (double& r : spheres.r) r *= frame_.scale;
     if (with_room_) shift(spheres);
-    if (work.stands_in_bed()) {
+    if (!in_box) {
       wrap(spheres, packing_.domain);
     } else {
-      const bool as_stated = !plan_.box_follows && work.edges == *work.target_edges;
-      Vector<dynamic> edges = work.edges * frame_.scale;
+      const bool as_stated = !plan_.box_follows && in_box->edges == *in_box->task.target_edges;
+      Vector<dynamic> edges = in_box->edges * frame_.scale;
       if (with_room_)
         edges = as_stated ? Vector<dynamic>(std::get<Box>(stated_.domain).size) : edges_around(scene_, edges);
-      packing_.domain = periodic_box(edges, work.walls);
+      packing_.domain = periodic_box(edges, in_box->task.walls);
       packing_.volume = volume_of(packing_.domain);
     }
     state_edges();
@@ -363,20 +309,22 @@ class Run {
     stated.edge.reset();
   }
 
-  void tell(const Course& course) {
-    const double fraction = share_ * course.packing_fraction;
-    if (course.for_history)
+  void tell(const StageProgress& progress) {
+    const double fraction = share_ * progress.packing_fraction;
+    if (progress.for_history)
       packing_.history.push_back(
-          {std::string(course.stage), course.spheres, fraction,
-           course.potential ? frame_.scale * *course.potential + frame_.origin[scene_.dimension() - 1] : 0,
-           course.max_overlap, record_.seconds()});
+          {std::string(progress.stage), progress.spheres, fraction,
+           progress.potential ? frame_.scale * *progress.potential + frame_.origin[scene_.dimension() - 1]
+                              : 0,
+           progress.max_overlap, record_.seconds()});
     const double expected = stated_.expected_packing_fraction;
     const double share = expected > 0 ? std::min(fraction / expected, 0.99) : 0;
-    const std::string overlap =
-        course.max_overlap > 0 ? fmt::format(", largest overlap {:.1e}", course.max_overlap) : std::string();
+    const std::string overlap = progress.max_overlap > 0
+                                    ? fmt::format(", largest overlap {:.1e}", progress.max_overlap)
+                                    : std::string();
     monitor_.report(
-        {course.stage, course.done.value_or(share),
-         fmt::format("{} spheres, packing fraction {:.4f}{}", grouped(course.spheres), fraction, overlap)});
+        {progress.stage, progress.done.value_or(share),
+         fmt::format("{} spheres, packing fraction {:.4f}{}", grouped(progress.spheres), fraction, overlap)});
   }
 
   const Plan& stated_;
@@ -388,7 +336,7 @@ class Run {
   Packing& packing_;
   const bool any_in_bed_;
   RunRecord record_;
-  Work* work_ = nullptr;                  // while stages act on it
+  Reporter* report_ = nullptr;            // while stages act
   std::optional<Pressing> pressed_ = {};  // the spheres, last, by a stage that settles
   Frame frame_;
   double share_ = 1;  // of packing fractions, that is left without coats

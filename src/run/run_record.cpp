@@ -10,18 +10,18 @@ void RunRecord::conclude() {
   packing_.effects = effects_.all();
 }
 
-void RunRecord::archive(Archive& a, Work* work) {
+void RunRecord::archive(Archive& a, Reporter* report) {
   std::vector<Effect> effects = effects_.all_so_far();
   Effect asked = asked_of_walls();
   double so_far = seconds();
-  std::uint64_t streams = work ? work->streams_used : 0;
+  std::uint64_t streams = report ? report->streams_used : 0;
   a(effects, asked, packing_.history, packing_.resumed, so_far, streams);
   if (!a.reads()) return;
   effects_.go_on_from(effects);
   asked_before_ = asked;
   asked_anew_ = walls_ ? walls_->asked() : Effect{};
-  if (!work) return;  // all of it comes again
-  work->streams_used = streams;
+  if (!report) return;  // all of it comes again
+  report->streams_used = streams;
   ++packing_.resumed;
   seconds_before_ = so_far - watch_.seconds();
 }

@@ -7,7 +7,7 @@
 #include "core/archive.hpp"
 #include "work/counted_container.hpp"
 #include "work/effect_log.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
 
 namespace bernal {
 
@@ -25,10 +25,10 @@ class RunRecord {
   /// Gives the packing the effects.
   void conclude();
 
-  /// For checkpoints, and how many streams of random numbers the work has used. A run that goes on reads it
-  /// twice: at its start, where there is no work yet, so that effects are in their order, and once everything
-  /// else is there.
-  void archive(Archive& a, Work* work);
+  /// For checkpoints, and how many streams of random numbers stages have used. A run that goes on reads it
+  /// twice: at its start, where there is no report yet, so that effects are in their order, and once
+  /// everything else is there.
+  void archive(Archive& a, Reporter* report);
 
  private:
   Effect asked_of_walls() const;

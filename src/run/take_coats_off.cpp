@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "bernal/core/tolerance.hpp"
 #include "core/rounding.hpp"
@@ -20,26 +19,16 @@ double scale_of_drawn(double scale, double coat, double smallest, double largest
 
 }  // namespace
 
-double take_coats_off(std::vector<double>& radii, const Supply& supply, double coat, double scale) {
-  std::vector<std::pair<double, double>> sizes;  // with the coat, and as drawn
-  for (std::size_t tag = 0; tag < supply.wanted(); ++tag)
-    sizes.emplace_back(supply.radii()[tag], supply.drawn(tag));
-  std::ranges::stable_sort(sizes, {}, &std::pair<double, double>::first);
-  double smallest = sizes.front().second, largest = smallest;
-  for (const auto& [with_coat, drawn] : sizes) {
-    smallest = std::min(smallest, drawn);
-    largest = std::max(largest, drawn);
+double take_coats_off(std::vector<double>& radii, const std::vector<std::uint32_t>& tags,
+                      const Supply& supply, double coat) {
+  double smallest = supply.drawn(0), largest = smallest;
+  for (std::size_t tag = 0; tag < supply.wanted(); ++tag) {
+    smallest = std::min(smallest, supply.drawn(tag));
+    largest = std::max(largest, supply.drawn(tag));
   }
-  const double drawn_scale = scale_of_drawn(scale, coat, smallest, largest);
-  std::vector<std::uint32_t> given(sizes.size(), 0);  // of each first of equal ones
-  for (double& r : radii) {
-    const auto [first, last] = std::ranges::equal_range(sizes, r, {}, &std::pair<double, double>::first);
-    const auto at = std::min(first - sizes.begin(), static_cast<std::ptrdiff_t>(sizes.size()) - 1);
-    const auto skip =
-        first == last ? 0 : std::min<std::ptrdiff_t>(given[static_cast<std::size_t>(at)]++, last - first - 1);
-    const double drawn = drawn_scale * sizes[static_cast<std::size_t>(at + skip)].second;
-    r = std::min(drawn, sum_rounded_down(r, -coat));
-  }
+  const double drawn_scale = scale_of_drawn(supply.scale(), coat, smallest, largest);
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    radii[i] = std::min(drawn_scale * supply.drawn(tags[i]), sum_rounded_down(radii[i], -coat));
   return drawn_scale;
 }
 

@@ -55,10 +55,10 @@ class FolderOfEngine {
 
 engine::Places run_in_folder(const Plan& plan, const std::filesystem::path& folder,
                              const engine::EngineTask& task, const std::vector<double>& radii,
-                             const Work& work) {
+                             const Monitor& monitor) {
   FolderOfEngine at(folder);
   try {
-    return engine::run_engine(*plan.scene.engine, task, radii, at.path(), work.monitor);
+    return engine::run_engine(*plan.scene.engine, task, radii, at.path(), monitor);
   } catch (const Error&) {
     std::error_code gone;
     const bool is_empty = std::filesystem::is_empty(at.path(), gone);
@@ -77,15 +77,17 @@ std::string name_of_engine(const Plan& plan) {
   return std::holds_alternative<Lammps>(*plan.scene.engine) ? "lammps" : "liggghts";
 }
 
-void take_engine_in_box(const Plan& plan, const std::filesystem::path& folder, Work& work) {
-  const std::vector<double>& radii = work.spheres.r;
-  const double volume = work.volume_of_spheres(), unit = unit_of(radii);
+void take_engine_in_box(const Plan& plan, const std::filesystem::path& folder, SpheresInBox& in_box,
+                        Reporter& report) {
+  const std::vector<double>& radii = in_box.spheres.r;
+  const double volume = in_box.volume_of_spheres(), unit = unit_of(radii);
   std::optional<double> most;
-  if (work.target_edges) most = above_asked * volume / work.target_edges->prod();
-  const Vector<3> proportions = work.edges;
-  const EngineBox scale = engine_box(proportions, volume, std::ranges::max(radii), work.attainable, most);
+  if (in_box.task.target_edges) most = above_asked * volume / in_box.task.target_edges->prod();
+  const Vector<3> proportions = in_box.edges;
+  const EngineBox scale =
+      engine_box(proportions, volume, std::ranges::max(radii), in_box.task.attainable, most);
   const Vector<3> edges = proportions * (scale.first / unit);
-  Random random = work.random(Stream::insert);
+  Random random = report.random(Stream::insert);
   Spheres<3> spheres;
   spheres.reserve(radii.size());
   for (const double r : radii)
@@ -96,7 +98,7 @@ void take_engine_in_box(const Plan& plan, const std::filesystem::path& folder, W
                                 .growth = scale.last / scale.first,
                                 .steps = plan.scene.engine->process().steps};
 
-  const engine::Places places = run_in_folder(plan, folder, task, told_radii, work);
+  const engine::Places places = run_in_folder(plan, folder, task, told_radii, report.monitor);
   const Vector<3> box = places.box.size(), end = proportions * scale.last;
   for (int k = 0; k < 3; ++k) {
     const auto axis = static_cast<std::size_t>(k);
@@ -104,13 +106,13 @@ void take_engine_in_box(const Plan& plan, const std::filesystem::path& folder, W
     for (std::size_t i = 0; i < radii.size(); ++i) {
       double x = (places.spheres.x[axis][i] - places.box.lower[k]) * factor;
       x -= end[k] * std::floor(x / end[k]);
-      work.spheres.x[axis][i] = x < end[k] ? x : 0;
+      in_box.spheres.x[axis][i] = x < end[k] ? x : 0;
     }
   }
-  work.edges = end;
-  work.begun = radii.size();
-  work.placed = work.may_overlap = true;
-  work.milestone(name_of_engine(plan), 1, 0);
+  in_box.edges = end;
+  in_box.begun = radii.size();
+  in_box.placed = in_box.may_overlap = true;
+  report.milestone(name_of_engine(plan), in_box, 0, 1);
 }
 
 /// From the packer's coordinates to the engine's: a cylinder that is oblique is turned upright.
@@ -158,17 +160,19 @@ Domain with_shaft(const Domain& domain, const Vector<3>& down, double volume_in_
 }
 
 /// Those spheres in the air, each with room around it. Throws where there is none for them.
-Spheres<3> in_air(const Domain& domain, const std::vector<double>& radii, const Plan& plan, Work& work) {
+Spheres<3> in_air(const Domain& domain, const std::vector<double>& radii, const Plan& plan,
+                  const SpheresInBed& in_bed, Reporter& report) {
   std::vector<std::uint32_t> tags(radii.size());
   std::iota(tags.begin(), tags.end(), 0u);
-  Work own = work.alone(tags);
-  own.target = {.count = static_cast<std::int64_t>(radii.size())};
-  own.domain = domain;
-  own.exact_place = {};  // that is of the scene's container
-  own.container = make_container(domain, WallArithmetic::plain, work.container->resolution());
-  own.stand_in_bed();
-  insert(own, until_full);
-  work.streams_used = own.streams_used;
+  Task task = in_bed.task;
+  task.target = {.count = static_cast<std::int64_t>(radii.size())};
+  task.domain = domain;
+  task.exact_place = {};  // that is of the scene's container
+  task.container = make_container(domain, WallArithmetic::plain, in_bed.task.container->resolution());
+  SpheresInBed own(task, std::make_shared<Supply>(in_bed.supply->of(tags)), report.effects);
+  Reporter of_own = report.alone();
+  insert(until_full, own, of_own);
+  report.streams_used = of_own.streams_used;
   if (own.bed().size() < radii.size())
     throw Error(
         ErrorCode::bad_scene,
@@ -212,18 +216,19 @@ void require_below_brim(const Container& container, const Spheres<3>& spheres, c
                 plan.scene.target.where);
 }
 
-void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, Work& work) {
-  work.stand_in_bed();
-  const Container& container = work.bed().container();
+void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, SpheresInBed& in_bed,
+                        Reporter& report) {
+  const Task& task = in_bed.task;
+  const Container& container = in_bed.bed().container();
   const std::size_t count = std::max<std::size_t>(
-      1, std::min(work.target_count(), work.count_filling(most_of_attainable * work.attainable)));
-  const std::vector<double>& all = work.supply->radii();
+      1, std::min(in_bed.target_count(), in_bed.count_filling(most_of_attainable * task.attainable)));
+  const std::vector<double>& all = in_bed.supply->radii();
   const std::vector<double> radii(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
   const double unit = unit_of(radii);
-  const Turn turn(work.domain);
-  Random random = work.random(Stream::insert);
+  const Turn turn(task.domain);
+  Random random = report.random(Stream::insert);
   const auto place_for = [&](double r) {
-    return clear_place(r, container, work.bed().places(), random, work.monitor);
+    return clear_place(r, container, in_bed.bed().places(), random, report.monitor);
   };
   const auto* liggghts = std::get_if<Liggghts>(&*plan.scene.engine);
   const bool pours = liggghts && liggghts->pour;
@@ -233,9 +238,9 @@ void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, W
   Domain around = turn.domain;
   if (pours) {
     const Vector<3> down = down_in(plan.scene);
-    around = with_shaft(turn.domain, down, work.volume_of_drawn(count) / most_in_air);
+    around = with_shaft(turn.domain, down, in_bed.volume_of_drawn(count) / most_in_air);
     pouring = pouring_of(*liggghts, down, around, radii);
-    begin = in_air(around, radii, plan, work);
+    begin = in_air(around, radii, plan, in_bed, report);
     for (std::size_t i = 0; i < count; ++i) begin.set_center(i, begin.center(i) / unit);
     for (double& r : begin.r) r /= unit;
   } else {
@@ -243,13 +248,13 @@ void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, W
   }
   const std::vector<double> told_radii = begin.r;
   const engine::TaskSpheres spheres_told = engine::told(std::move(begin));
-  const engine::EngineTask task{
+  const engine::EngineTask engine_task{
       .spheres = spheres_told,
       .domain = to_local(around, Frame{.scale = unit}),
       .steps = pouring ? 3 * pouring->steps_of_fall(spheres_told) : plan.scene.engine->process().steps,
       .pouring = pouring};
 
-  const engine::Places places = run_in_folder(plan, folder, task, told_radii, work);
+  const engine::Places places = run_in_folder(plan, folder, engine_task, told_radii, report.monitor);
   Spheres<3> spheres;
   spheres.reserve(count);
   std::size_t put_back = 0;
@@ -262,26 +267,27 @@ void take_engine_in_bed(const Plan& plan, const std::filesystem::path& folder, W
     spheres.push_back(c, radii[i]);
   }
   if (pours) require_below_brim(container, spheres, plan);
-  work.begun = count;
-  work.crowded_start = std::move(spheres);
+  in_bed.begun = count;
+  in_bed.crowded_start = std::move(spheres);
   if (pours)
-    work.account = fmt::format("poured by LIGGGHTS with a friction of {} and a restitution of {}",
-                               liggghts->friction, liggghts->restitution);
+    report.account = fmt::format("poured by LIGGGHTS with a friction of {} and a restitution of {}",
+                                 liggghts->friction, liggghts->restitution);
   if (put_back > 0)
-    work.account = fmt::format("{} had left the container in {}, and {} put back",
-                               put_back == 1 ? "1 sphere" : grouped(put_back) + " spheres",
-                               name_of_engine(plan), put_back == 1 ? "was" : "were");
-  work.crowd_milestone(name_of_engine(plan), count, volume_of(work.crowded_start), 0, 1);
+    report.account = fmt::format("{} had left the container in {}, and {} put back",
+                                 put_back == 1 ? "1 sphere" : grouped(put_back) + " spheres",
+                                 name_of_engine(plan), put_back == 1 ? "was" : "were");
+  report.milestone(name_of_engine(plan), count, volume_of(in_bed.crowded_start) / container.volume(), 0, 1);
 }
 
 }  // namespace
 
-void take_engine(const Plan& plan, const std::filesystem::path& folder, Work& work) {
-  const EffectTimer timer(work.effects[engine::engine_effect]);
-  if (table_of(plan.scene.stages.front()).traits.stands_in_bed(plan.scene))
-    take_engine_in_bed(plan, folder, work);
+void take_engine(const Plan& plan, const std::filesystem::path& folder, SpheresOfRun& spheres,
+                 Reporter& report) {
+  const EffectTimer timer(report.effects[engine::engine_effect]);
+  if (auto* in_bed = std::get_if<SpheresInBed>(&spheres))
+    take_engine_in_bed(plan, folder, *in_bed, report);
   else
-    take_engine_in_box(plan, folder, work);
+    take_engine_in_box(plan, folder, std::get<SpheresInBox>(spheres), report);
 }
 
 }  // namespace bernal

@@ -62,86 +62,86 @@ std::string_view remedy_in_bed(int dimension) {
 }
 
 template <int D>
-void take_start_in_box(const Plan& plan, double scale, Work& work) {
+void take_start_in_box(const Plan& plan, double scale, SpheresInBox& in_box) {
+  const Task& task = in_box.task;
   const StartSpheres& start = plan.start;
   const std::size_t n = start.spheres.size();
-  work.edges = start.edges / scale;
+  in_box.edges = start.edges / scale;
   for (int k = 0; k < D; ++k) {
-    const double edge = work.edges[k];
+    const double edge = in_box.edges[k];
     for (std::size_t i = 0; i < n; ++i) {
       double x = start.spheres.x[static_cast<std::size_t>(k)][i] / scale;
-      if (work.has_wall(k)) {
+      if (task.has_wall(k)) {
         if (!(x > 0 && x < edge))
           refuse(start, i, fmt::format("this sphere does not lie between the walls along axis {}", k));
       } else {
         Boundary<1> axis{Vector<1>::Constant(edge)};
         x = axis.wrap(Vector<1>::Constant(x))[0];
       }
-      work.spheres.x[static_cast<std::size_t>(k)][i] = x;
+      in_box.spheres.x[static_cast<std::size_t>(k)][i] = x;
     }
   }
-  work.begun = n;
-  work.placed = n == work.spheres.size();
-  if (work.target_edges && !plan.box_follows) {
-    Spheres<D> moved = work.spheres.in<D>();
-    Vector<D> edges = work.edges;
-    if (edges != *work.target_edges) resize_box<D>(moved, edges, *work.target_edges);
-    work.spheres = std::move(moved);
-    work.edges = edges;
+  in_box.begun = n;
+  in_box.placed = n == in_box.spheres.size();
+  if (task.target_edges && !plan.box_follows) {
+    Spheres<D> moved = in_box.spheres.in<D>();
+    Vector<D> edges = in_box.edges;
+    if (edges != *task.target_edges) resize_box<D>(moved, edges, *task.target_edges);
+    in_box.spheres = std::move(moved);
+    in_box.edges = edges;
   }
 
   const Stage& first = plan.scene.stages.front();
   const bool frees_overlap = table_of(first).traits.frees_box;
-  Spheres<D> there = work.spheres.in<D>();
+  Spheres<D> there = in_box.spheres.in<D>();
   there.resize(n);
   for (int k = 0; k < D; ++k)
-    for (std::size_t i = 0; i < n && work.has_wall(k); ++i) {
+    for (std::size_t i = 0; i < n && task.has_wall(k); ++i) {
       const double x = there.x[static_cast<std::size_t>(k)][i], r = there.r[i];
-      if (x >= r && work.edges[k] - x >= r) continue;
-      work.may_overlap = true;
+      if (x >= r && in_box.edges[k] - x >= r) continue;
+      in_box.may_overlap = true;
       if (!frees_overlap)
         refuse(start, i,
                fmt::format("this sphere {} a wall along axis {}; begin with \"relax\"",
                            plan.scene.wall_gap > 0 ? "is nearer than the gap to" : "crosses", k));
     }
-  const Vector<D> edges = edges_around_walls<D>(work.edges, work.walls);
+  const Vector<D> edges = edges_around_walls<D>(in_box.edges, task.walls);
   const Boundary<D> boundary{edges};
   // Half of what a box is grown by beyond contact is more than its rounding.
   const double rounding = 0.5 * tolerance::growth(edges.maxCoeff() / std::ranges::min(there.r));
   WorstPair worst;
-  for (const auto& [i, j] : overlapping<D>(there, edges, work.allowed_overlap)) {
+  for (const auto& [i, j] : overlapping<D>(there, edges, task.allowed_overlap)) {
     const double distance = boundary.minimum_image(there.center(i) - there.center(j)).norm();
     const double sum = there.r[i] + there.r[j];
-    if (distance < (1 - work.allowed_overlap) * (1 + rounding) * sum) worst.look_at(i, j, distance, sum);
+    if (distance < (1 - task.allowed_overlap) * (1 + rounding) * sum) worst.look_at(i, j, distance, sum);
   }
   if (!(worst.ratio > -1)) return;
-  work.may_overlap = true;
+  in_box.may_overlap = true;
   if (!frees_overlap) refuse_overlap(start, worst, first.name(), plan.scene.gap);
 }
 
 /// Those that are clear of the others, and of the walls, stand in the bed from now on.
-void take_start_in_bed(const Plan& plan, const Frame& frame, Work& work) {
+void take_start_in_bed(const Plan& plan, const Frame& frame, SpheresInBed& in_bed) {
   const StartSpheres& start = plan.start;
   const Stage& first = plan.scene.stages.front();
   const bool frees_overlap = table_of(first).traits.frees_bed;
-  work.stand_in_bed();
-  Bed& bed = work.bed();
+  Bed& bed = in_bed.bed();
   const Container& container = bed.container();
   const double gap = least_gap * bed.skin();
   const std::size_t n = start.spheres.size();
   Spheres<3> spheres;
-  CellGrid<3> grid(container.bounds(), container.boundary(), work.supply->smallest(), work.supply->largest(),
-                   n);
+  CellGrid<3> grid(container.bounds(), container.boundary(), in_bed.supply->smallest(),
+                   in_bed.supply->largest(), n);
   WorstPair worst;
   std::vector<bool> stands(n, false);
   for (std::size_t i = 0; i < n; ++i) {
-    const double r = work.supply->radius(static_cast<std::uint32_t>(i));
+    const double r = in_bed.supply->radius(static_cast<std::uint32_t>(i));
     Vector<3> c = container.boundary().wrap(frame.to_local(place_in_bed(start.spheres.center(i))));
     if (!container.contains(c, 0))
       refuse(start, i, "this sphere lies outside of the container; check the unit, \"start_unit\" says it");
     stands[i] = container.contains(c, r + gap);
     if (!stands[i]) {
-      const std::optional<Vector<3>> touching = work.exact_place(c, r);
+      const std::optional<Vector<3>> touching = in_bed.task.exact_place(c, r);
       stands[i] = touching.has_value();
       if (touching) c = *touching;
       if (!touching && !frees_overlap)
@@ -165,26 +165,27 @@ void take_start_in_bed(const Plan& plan, const Frame& frame, Work& work) {
   }
   if (worst.ratio > -1 && !frees_overlap)
     refuse_overlap(start, worst, first.name(), plan.scene.gap, remedy_in_bed(container.dimension()));
-  work.supply->set_placed(stands);
-  work.begun = n;
-  if (bed.size() < n) work.crowded_start = std::move(spheres);
+  in_bed.supply->set_placed(stands);
+  in_bed.begun = n;
+  if (bed.size() < n) in_bed.crowded_start = std::move(spheres);
 }
 
 }  // namespace
 
-void take_start(const Plan& plan, const Frame& frame, Work& work) {
+void take_start(const Plan& plan, const Frame& frame, SpheresOfRun& spheres, Reporter& report) {
   if (plan.start.spheres.empty()) return;
-  const EffectTimer timer(work.effects["start"]);
-  const Stage& first = plan.scene.stages.front();
-  if (table_of(first).traits.stands_in_bed(plan.scene)) return take_start_in_bed(plan, frame, work);
-  with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
-    take_start_in_box<decltype(dimension)::value>(plan, frame.scale, work);
+  const EffectTimer timer(report.effects["start"]);
+  if (auto* in_bed = std::get_if<SpheresInBed>(&spheres)) return take_start_in_bed(plan, frame, *in_bed);
+  auto& in_box = std::get<SpheresInBox>(spheres);
+  with_dimension(in_box.dimension(), EveryDimension{}, [&](auto dimension) {
+    take_start_in_box<decltype(dimension)::value>(plan, frame.scale, in_box);
   });
-  if (!work.placed && !table_of(first).traits.joins_start)
+  const Stage& first = plan.scene.stages.front();
+  if (!in_box.placed && !table_of(first).traits.joins_start)
     throw Error(ErrorCode::bad_scene,
                 fmt::format("\"{}\" finds no places for {} spheres among the {} of the start: begin with "
                             "\"relax\", or draw no others",
-                            first.name(), work.spheres.size() - work.begun, work.begun),
+                            first.name(), in_box.spheres.size() - in_box.begun, in_box.begun),
                 first.locations.whole);
 }
 

@@ -126,7 +126,7 @@ struct Member {
   }
 };
 
-/// On what a key of a stage acts: spheres that stand in a bed, or in a box (see `Work`).
+/// On what a key of a stage acts: spheres that stand in a bed, or in a box (see `SpheresOfRun`).
 enum class Acts { everywhere, in_bed, in_box };
 
 struct Key {

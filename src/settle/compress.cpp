@@ -154,26 +154,28 @@ Vector<3> direction_of(const Coordinates& direction) {
   return in_space.normalized();
 }
 
-StageEnd compress(Work& work, const Compress& options) {
-  Bed& bed = work.bed();
+StageEnd compress(const Compress& options, SpheresInBed& in_bed, Reporter& report) {
+  Bed& bed = in_bed.bed();
   const Vector<3> direction = direction_of(options.direction);
   require_support(bed.container().boundary(), direction);
   if (bed.size() == 0) return StageEnd::converged;
-  const EffectTimer timer(work.effects["compression"]);
+  const EffectTimer timer(report.effects["compression"]);
   const double floor = floor_of(bed.container().bounds(), direction);
   double radius = bed.mean_radius();
-  Random random = work.random(Stream::compress);
+  Random random = report.random(Stream::compress);
   double box = options.buffer * radius;
   int iteration = 0;
   bool stirs = true;
-  const Resumable part(work, "compress", [&](Archive& a) { a(radius, random, box, iteration, stirs); });
+  const Resumable part(report, "compress", [&](Archive& a) { a(radius, random, box, iteration, stirs); });
   if (!part.resumed()) bed.sort_by_height(direction);
   GlobalSweeps global(bed, direction);
   Moved moved;
 
   for (; iteration < options.max_iterations; ++iteration) {
-    if (!stirs) return roll_to_rest(work, direction, {.still = at_rest_in_radii, .most_iterations = options.max_iterations});
-    if (work.stop()) return StageEnd::cancelled;
+    if (!stirs)
+      return roll_to_rest(bed, report, direction,
+                          {.still = at_rest_in_radii, .most_iterations = options.max_iterations});
+    if (report.stop()) return StageEnd::cancelled;
     box = bed.enclose(box);
     global.wake_all();  // the ends of the old boxes held some
     moved.start(bed);
@@ -190,7 +192,7 @@ StageEnd compress(Work& work, const Compress& options) {
       global.wake_all();
       global.settle();
     }
-    work.milestone("compress");
+    report.milestone("compress", bed);
     if (options.tolerance) {
       const double fall = before - bed.potential(direction);
       if (resting_bed && fall < *options.tolerance * (before - floor)) return StageEnd::converged;
@@ -231,7 +233,7 @@ const StageEntry& entry_of<Compress>() {
                                       .keys = compression_keys(),
                                       .choices = ends_of_compression()},
                                      {.in_bed = true, .in_plane = true, .only_moves = true}),
-      .act_in_bed = act(compress),
+      .act_in_bed = of_options(compress),
       .may_bring = {"neighbour lists", "compression"},
       .effects = of_options(effects_of_compression),
       .require = of_options(+[](const Compress& o, const Domain& domain, double, const FillTask&) {

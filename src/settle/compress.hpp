@@ -21,13 +21,13 @@ namespace bernal {
 /// to a packing fraction of 0.527 and with local directions to 0.58; skipping of spheres whose surroundings
 /// have not changed; and the skin. Cost: about 0.5 µs a sphere and sweep; an iteration makes up to 8 sweeps
 /// along the global direction, over the spheres that are awake, and 10 along local directions.
-StageEnd compress(Work& work, const Compress& options);
+StageEnd compress(const Compress& options, SpheresInBed& in_bed, Reporter& report);
 
 /// Shaking (Han, Feng & Owen 2005): iterations break arches that withstand compression. In them every sphere
 /// moves along a random local direction *perpendicular* to the global one, to first touch and on along its
 /// contacts. Then the bed is compressed again; the last of these compressions determines the result. Cost: 10
 /// sweeps a round, and those of the compression.
-StageEnd shake(Work& work, const Shake& options);
+StageEnd shake(const Shake& options, SpheresInBed& in_bed, Reporter& report);
 
 /// Throws Error{bad_scene} if spheres pressed along `direction` would fall for ever: it must have no
 /// component along a periodic axis.

@@ -34,42 +34,42 @@ constexpr std::size_t few = 1000;
 constexpr std::size_t last_few = 16;
 constexpr double last_share = 0.01;
 
-double share_of_container(const Work& work, std::size_t count) {
-  return work.volume_of_drawn(count) / work.container->volume();
+double share_of_container(const SpheresInBed& in_bed, std::size_t count) {
+  return in_bed.volume_of_drawn(count) / in_bed.task.container->volume();
 }
 
-bool falls_short(const Work& work) {
-  const double wanted = share_of_container(work, work.target_count());
-  return work.bed().packing_fraction() < far_short * std::min(wanted, work.attainable);
+bool falls_short(const SpheresInBed& in_bed) {
+  const double wanted = share_of_container(in_bed, in_bed.target_count());
+  return in_bed.bed().packing_fraction() < far_short * std::min(wanted, in_bed.task.attainable);
 }
 
-bool hardly_any_left(const Work& work) {
-  if (work.target.is_open()) return work.target.fill;
-  const std::size_t wanted = work.supply->wanted();
-  return work.bed().size() + last_few >= wanted ||
-         work.bed().packing_fraction() >= (1 - last_share) * share_of_container(work, wanted);
+bool hardly_any_left(const SpheresInBed& in_bed) {
+  if (in_bed.task.target.is_open()) return in_bed.task.target.fill;
+  const std::size_t wanted = in_bed.supply->wanted();
+  return in_bed.bed().size() + last_few >= wanted ||
+         in_bed.bed().packing_fraction() >= (1 - last_share) * share_of_container(in_bed, wanted);
 }
 
 /// From an empty bed. Where the sizes are left open they keep their order, as the largest of them would not
 /// be what was drawn.
-StageEnd insert_if_denser(Work& work, StageEnd end) {
-  const Keepsake packed(work);
-  const double before = work.bed().packing_fraction();
+StageEnd insert_if_denser(SpheresInBed& in_bed, Reporter& report, StageEnd end) {
+  const BedKeepsake packed(in_bed);
+  const double before = in_bed.bed().packing_fraction();
   StageEnd inserted = StageEnd::full;
   try {
-    if (work.target.is_open()) {
-      work.put_in_bed({});
-      inserted = insert(work, until_full);
+    if (in_bed.task.target.is_open()) {
+      in_bed.put_in_bed({});
+      inserted = insert(until_full, in_bed, report);
     } else {
-      inserted = insert_largest_first(work, before);
+      inserted = insert_largest_first(in_bed, report, before);
     }
   } catch (const Cancelled&) {
-    packed.give_back_if_denser(work);
+    packed.give_back_if_denser(in_bed);
     throw;
   }
-  packed.give_back_if_denser(work);
+  packed.give_back_if_denser(in_bed);
   if (inserted == StageEnd::cancelled) return inserted;
-  return work.bed().packing_fraction() > before ? inserted : end;
+  return in_bed.bed().packing_fraction() > before ? inserted : end;
 }
 
 double full_at_random(const Insert& options, const EmptyBed& bed) {
@@ -81,97 +81,97 @@ double full_at_random(const Insert& options, const EmptyBed& bed) {
 
 }  // namespace
 
-StageEnd insert(Work& work, const Insert& options) {
-  if (options.layout == Layout::lattice) return insert_on_lattice(work, options);
-  const EffectTimer timer(work.effects["insertion"]);
-  Bed& bed = work.bed();
-  Supply& supply = *work.supply;
-  Random random = work.random(Stream::insert);
+StageEnd insert(const Insert& options, SpheresInBed& in_bed, Reporter& report) {
+  if (options.layout == Layout::lattice) return insert_on_lattice(options, in_bed, report);
+  const EffectTimer timer(report.effects["insertion"]);
+  Bed& bed = in_bed.bed();
+  Supply& supply = *in_bed.supply;
+  Random random = report.random(Stream::insert);
   // Trials are counted inside the container; places are drawn a little beyond it, too.
   const double attempts =
       options.attempts * std::clamp(bed.places().volume() / bed.container().volume(), 1.0, most_drawn);
-  SnugPlaces snug(work);
+  SnugPlaces snug(in_bed, report);
   std::size_t waiting = 0;  // so many at the head of the window found no place
-  const Resumable part(work, "insert", [&](Archive& a) { a(random, waiting, snug); });
+  const Resumable part(report, "insert", [&](Archive& a) { a(random, waiting, snug); });
   if (!part.resumed() && snug.only_some_touch()) snug.place_those_that_touch();
   bool goes_on = part.resumed();
   do {
     if (!std::exchange(goes_on, false)) waiting = 0;
     while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
-      if (work.stop()) return StageEnd::cancelled;
+      if (report.stop()) return StageEnd::cancelled;
       const std::uint32_t tag = supply.window()[waiting];
       const double r = supply.radius(tag);
       const auto place = find_place(
           attempts, [&] { return bed.places().draw(random); },
-          [&](const Vector<3>& c) { return bed.fits(c, r); }, work.monitor);
+          [&](const Vector<3>& c) { return bed.fits(c, r); }, report.monitor);
       if (!place) {
         ++waiting;
         continue;
       }
       bed.insert(*place, r, tag);
       supply.take(waiting);
-      if (bed.size() % milestone_every == 0) work.milestone("insert");
+      if (bed.size() % milestone_every == 0) report.milestone("insert", bed);
     }
   } while (waiting > 0 && snug.place_waiting(options.packing_fraction) > 0);
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
 }
 
-StageEnd insert_largest_first(Work& work, double densest_so_far) {
+StageEnd insert_largest_first(SpheresInBed& in_bed, Reporter& report, double densest_so_far) {
   constexpr double many_attempts = 1000, few_attempts = 100;
   constexpr int many_failures = 200;  // after which every sphere gets few
   constexpr int most_searches = 10;   // in vain
   constexpr int most_in_a_row = 20;   // of one size that find no place, before the rest of it is passed over
-  const EffectTimer timer(work.effects["insertion"]);
-  work.put_in_bed({});
-  Bed& bed = work.bed();
-  const Supply& supply = *work.supply;
-  const std::size_t count = work.target_count();
+  const EffectTimer timer(report.effects["insertion"]);
+  in_bed.put_in_bed({});
+  Bed& bed = in_bed.bed();
+  const Supply& supply = *in_bed.supply;
+  const std::size_t count = in_bed.target_count();
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t tag) { return supply.radius(tag); });
-  double within_reach = work.volume_of_drawn(count);  // if all that follow find a place
+  double within_reach = in_bed.volume_of_drawn(count);  // if all that follow find a place
   const double enough = densest_so_far * bed.container().volume();
 
-  Random random = work.random(Stream::insert);
-  SnugPlaces snug(work);
+  Random random = report.random(Stream::insert);
+  SnugPlaces snug(in_bed, report);
   std::vector<bool> placed(count, false);
   double without_place = 0;
   int in_a_row = 0, failures = 0;
   for (const std::uint32_t tag : order) {
-    if (work.monitor.stop()) throw Cancelled();
+    if (report.monitor.stop()) throw Cancelled();
     const double r = supply.radius(tag);
     if (r != without_place) in_a_row = 0;
     if (within_reach < enough) break;
     if (in_a_row == most_in_a_row) {
-      within_reach -= ball_volume(work.dimension(), r);
+      within_reach -= ball_volume(bed.dimension(), r);
       continue;
     }
     std::optional<Vector<3>> place;
     if (!snug.needed(r))
       place = find_place(
           failures < many_failures ? many_attempts : few_attempts, [&] { return bed.places().draw(random); },
-          [&](const Vector<3>& c) { return bed.fits(c, r); }, work.monitor);
+          [&](const Vector<3>& c) { return bed.fits(c, r); }, report.monitor);
     if (!place && failures < most_searches) place = snug.find(r);
     if (place) {
       bed.insert(*place, r, tag);
       placed[tag] = true;
     } else {
       without_place = r;
-      within_reach -= ball_volume(work.dimension(), r);
+      within_reach -= ball_volume(bed.dimension(), r);
       ++in_a_row;
       ++failures;
     }
   }
-  work.supply->set_placed(placed, false);
+  in_bed.supply->set_placed(placed, false);
   return bed.size() == count ? StageEnd::converged : StageEnd::full;
 }
 
-StageEnd insert_what_else_fits(Work& work, StageEnd end) {
+StageEnd insert_what_else_fits(SpheresInBed& in_bed, Reporter& report, StageEnd end) {
   if (end != StageEnd::full) return end;
-  const NotResumable rest(work);
-  const bool few_wanted = !work.target.is_open() && work.target_count() <= few;
-  if (few_wanted || falls_short(work)) end = insert_if_denser(work, end);
-  return end == StageEnd::full && hardly_any_left(work) ? insert(work, until_full) : end;
+  const NotResumable rest(report);
+  const bool few_wanted = !in_bed.task.target.is_open() && in_bed.target_count() <= few;
+  if (few_wanted || falls_short(in_bed)) end = insert_if_denser(in_bed, report, end);
+  return end == StageEnd::full && hardly_any_left(in_bed) ? insert(until_full, in_bed, report) : end;
 }
 
 template <>
@@ -193,7 +193,7 @@ const StageEntry& entry_of<Insert>() {
                     number(&Insert::packing_fraction, "packing_fraction", "where insertion stops",
                            packing_fractions())}},
           {.in_bed = true, .in_plane = true, .reaches = Reaches::insertion}),
-      .act_in_bed = act(insert),
+      .act_in_bed = of_options(insert),
       .may_bring = {"insertion"},
       .effects = of_options(effects_of_insertion),
       .reached = of_options(+[](const Insert& options) { return options.packing_fraction; }),

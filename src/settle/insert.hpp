@@ -7,7 +7,7 @@ namespace bernal {
 /// Random sequential insertion: the remaining spheres, in order, each at a uniformly random position where it
 /// overlaps nothing (Han, Feng & Owen 2005, section 2: the initial packing). Ends when the target or the
 /// given packing fraction is reached, or when no sphere of the window found a position. Cost: O(1) a trial.
-StageEnd insert(Work& work, const Insert& options);
+StageEnd insert(const Insert& options, SpheresInBed& in_bed, Reporter& report);
 
 /// The same at the sites of a face-centred lattice, each sphere at the next site where it fits: the sites are
 /// in random order, so that ordered sizes make no pattern. The lattice is the widest with enough sites,
@@ -19,7 +19,7 @@ StageEnd insert(Work& work, const Insert& options);
 /// Face-centred, because no lattice is denser: 0.74 of equal spheres, against 0.52 for a simple cubic one.
 /// For the same reason that of discs is hexagonal: 0.91. Cost: about twenty passes over as many sites as
 /// spheres, O(1) each.
-StageEnd insert_on_lattice(Work& work, const Insert& options);
+StageEnd insert_on_lattice(const Insert& options, SpheresInBed& in_bed, Reporter& report);
 
 /// The packing fraction at which that ends in an empty container: for equal spheres within 0.04 if x =
 /// `bed.wall_share` < 0.7 (containers a few spheres wide are irregular); for unequal sizes within a factor of
@@ -32,14 +32,14 @@ inline constexpr Insert until_full = {.attempts = 1000, .packing_fraction = 1};
 /// The same for all requested spheres, from the start, the largest first: for sizes some of which hardly fit
 /// once small ones are placed. Spheres that find no position are skipped. Ends immediately when it can no
 /// longer become that dense.
-StageEnd insert_largest_first(Work& work, double densest_so_far = 0);
+StageEnd insert_largest_first(SpheresInBed& in_bed, Reporter& report, double densest_so_far = 0);
 
 /// After a stage that moves all spheres at once and could place no more: a few large spheres, with hardly any
 /// play between the walls, may have kept all others from coming free. If far fewer than the requested and
 /// likely number are placed, or if few are requested, insertion in an empty bed is tried as well; and if
 /// hardly any are left, these are inserted, skipping those without a position. Returns how the last of these
 /// ended.
-StageEnd insert_what_else_fits(Work& work, StageEnd end);
+StageEnd insert_what_else_fits(SpheresInBed& in_bed, Reporter& report, StageEnd end);
 
 /// Its effects with their prices.
 std::vector<PlanItem> effects_of_insertion(const Insert& options, const Outlook& outlook);

@@ -111,12 +111,12 @@ struct Sites {
 /// The widest that has so many free sites, or of those tried, down to the one whose spheres touch, the one
 /// with far more than the closer ones, if there is such a one. Wide ones are tried first: where few spheres
 /// are wanted in much room, the others have sites without number.
-Sites widest_lattice(const Work& work, std::size_t needed) {
-  const Bed& bed = work.bed();
-  const double r = work.supply->largest(), touching = 2 * (r + bed.skin());
+Sites widest_lattice(const SpheresInBed& in_bed, const Monitor& monitor, std::size_t needed) {
+  const Bed& bed = in_bed.bed();
+  const double r = in_bed.supply->largest(), touching = 2 * (r + bed.skin());
   const auto sites_at = [&](double spacing) {
     const Lattice lattice(bed.container(), r, spacing, bed.skin());
-    return Sites{lattice, lattice.sites(bed, r, work.monitor)};
+    return Sites{lattice, lattice.sites(bed, r, monitor)};
   };
   const double even = even_spacing(bed.container(), needed);
   double wide = std::max(touching, widest_tried * even), close = wide;
@@ -147,25 +147,25 @@ double full_lattice(const EmptyBed& bed) {
          (1 + wall_deficit_of_lattice * bed.wall_share);
 }
 
-StageEnd insert_on_lattice(Work& work, const Insert& options) {
-  const EffectTimer timer(work.effects["insertion"]);
-  Bed& bed = work.bed();
-  Supply& supply = *work.supply;
-  Random random = work.random(Stream::insert);
+StageEnd insert_on_lattice(const Insert& options, SpheresInBed& in_bed, Reporter& report) {
+  const EffectTimer timer(report.effects["insertion"]);
+  Bed& bed = in_bed.bed();
+  Supply& supply = *in_bed.supply;
+  Random random = report.random(Stream::insert);
   const auto is_done = [&] {
     return supply.exhausted() || bed.packing_fraction() >= options.packing_fraction;
   };
-  const std::size_t enough = std::min(work.count_filling(options.packing_fraction), supply.wanted());
+  const std::size_t enough = std::min(in_bed.count_filling(options.packing_fraction), supply.wanted());
 
-  SnugPlaces snug(work);  // where a lattice has no site
+  SnugPlaces snug(in_bed, report);  // where a lattice has no site
   if (snug.only_some_touch()) snug.place_those_that_touch();
   if (is_done() || enough <= bed.size()) return StageEnd::converged;
   const std::size_t needed = enough - bed.size();
-  auto [lattice, sites] = widest_lattice(work, needed);
+  auto [lattice, sites] = widest_lattice(in_bed, report.monitor, needed);
   if (static_cast<double>(sites.size()) < share_of_large * static_cast<double>(needed) &&
       supply.smallest() < supply.largest()) {
     lattice = {bed.container(), supply.smallest(), even_spacing(bed.container(), needed), bed.skin()};
-    sites = lattice.sites(bed, supply.smallest(), work.monitor);
+    sites = lattice.sites(bed, supply.smallest(), report.monitor);
   }
   std::map<std::uint32_t, int> in_vain;  // sites of this lattice that a sphere was tried at
   const auto occupy = [&](const Vector<3>& site) {
@@ -179,7 +179,7 @@ StageEnd insert_on_lattice(Work& work, const Insert& options) {
       if (bed.fits(site, r)) {
         bed.insert(site, r, tag);
         supply.take(k);
-        if (bed.size() % a_milestone_every == 0) work.milestone("insert");
+        if (bed.size() % a_milestone_every == 0) report.milestone("insert", bed);
         return;
       }
       too_large = r;
@@ -189,14 +189,14 @@ StageEnd insert_on_lattice(Work& work, const Insert& options) {
   for (int halvings = 0;; ++halvings) {
     in_vain.clear();
     for (std::size_t left = sites.size(); left > 0 && !is_done(); --left) {
-      if (work.monitor.stop()) return StageEnd::cancelled;
+      if (report.monitor.stop()) return StageEnd::cancelled;
       std::swap(sites[random() % left], sites[left - 1]);
       occupy(sites[left - 1]);
     }
     if (is_done()) return StageEnd::converged;
     if (halvings == most_halvings || supply.smallest() == supply.largest()) break;
     lattice.halve(bed.container().boundary());
-    sites = lattice.sites(bed, supply.smallest(), work.monitor);
+    sites = lattice.sites(bed, supply.smallest(), report.monitor);
   }
   while (!is_done())
     if (snug.place_waiting(options.packing_fraction) == 0) return StageEnd::full;

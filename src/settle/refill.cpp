@@ -24,16 +24,16 @@ constexpr double least_trials = 3e5;
 
 /// Places in the container where a sphere of radius `smallest` clears the wall: drawn once a stage, since the
 /// wall stays where it is.
-std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
-  const EffectTimer timer(work.effects["refilling"]);
+std::vector<Probe> draw_probes(SpheresInBed& in_bed, Reporter& report, double probes_a_sphere) {
+  const EffectTimer timer(report.effects["refilling"]);
   const Made made("refilling");
-  const Bed& bed = work.bed();
+  const Bed& bed = in_bed.bed();
   const Container& container = bed.container();
-  Random random = work.random(Stream::refill);
+  Random random = report.random(Stream::refill);
   const double radius =
-      bed.size() > 0 ? bed.mean_radius() : work.supply->radius(work.supply->window().front());
-  const double smallest = work.supply->smallest() + bed.skin();
-  const double capacity = container.volume() / ball_volume(work.dimension(), radius);
+      bed.size() > 0 ? bed.mean_radius() : in_bed.supply->radius(in_bed.supply->window().front());
+  const double smallest = in_bed.supply->smallest() + bed.skin();
+  const double capacity = container.volume() / ball_volume(bed.dimension(), radius);
   const double wanted = std::min(most_probes, 1000 + probes_a_sphere * capacity);
   std::vector<Probe> probes;
   for (double trial = 0; trial < std::max(least_trials, most_trials * wanted); ++trial) {
@@ -46,10 +46,10 @@ std::vector<Probe> draw_probes(Work& work, double probes_a_sphere) {
 }
 
 /// Puts spheres of the window into the free space.
-void fill_free_space(Work& work, std::vector<Probe>& probes) {
-  const EffectTimer timer(work.effects["refilling"]);
-  Bed& bed = work.bed();
-  Supply& supply = *work.supply;
+void fill_free_space(SpheresInBed& in_bed, Reporter& report, std::vector<Probe>& probes) {
+  const EffectTimer timer(report.effects["refilling"]);
+  Bed& bed = in_bed.bed();
+  Supply& supply = *in_bed.supply;
   const double smallest = supply.smallest();
   bed.update_grid();
   std::vector<Probe*> open;
@@ -93,35 +93,35 @@ void fill_free_space(Work& work, std::vector<Probe>& probes) {
 /// In a round, random places are probed for the largest sphere that each of them holds; then the spheres to
 /// come, in their order, take the first place that is large enough. Cost: O(1) a probe, and that of the
 /// compression.
-StageEnd refill(Work& work, const Refill& options) {
-  require_support(work.bed().container().boundary(), direction_of(options.shake.compress.direction));
+StageEnd refill(const Refill& options, SpheresInBed& in_bed, Reporter& report) {
+  require_support(in_bed.bed().container().boundary(), direction_of(options.shake.compress.direction));
   enum class Step { fill, compress, shake } step = Step::fill;
   int round = 0;
   double before = 0, after = 0;
   std::vector<Probe> probes;
-  const Resumable part(work, "refill", [&](Archive& a) { a(step, round, before, after, probes); });
+  const Resumable part(report, "refill", [&](Archive& a) { a(step, round, before, after, probes); });
   if (!part.resumed()) {
-    if (work.supply->exhausted()) return StageEnd::converged;
-    probes = draw_probes(work, options.probes);
+    if (in_bed.supply->exhausted()) return StageEnd::converged;
+    probes = draw_probes(in_bed, report, options.probes);
   }
   for (; round < options.max_rounds; ++round) {
     if (step == Step::fill) {
-      if (work.stop()) return StageEnd::cancelled;
-      before = work.bed().packing_fraction();
-      fill_free_space(work, probes);
-      after = work.bed().packing_fraction();
-      work.milestone("refill");
+      if (report.stop()) return StageEnd::cancelled;
+      before = in_bed.bed().packing_fraction();
+      fill_free_space(in_bed, report, probes);
+      after = in_bed.bed().packing_fraction();
+      report.milestone("refill", in_bed.bed());
       step = Step::compress;
     }
     if (step == Step::compress) {
-      const StageEnd end = compress(work, options.shake.compress);
+      const StageEnd end = compress(options.shake.compress, in_bed, report);
       if (end == StageEnd::cancelled) return end;
-      if (work.supply->exhausted()) return end;
+      if (in_bed.supply->exhausted()) return end;
       if (after - before <= options.patience * after)
         return end == StageEnd::hit_limit ? end : StageEnd::full;
       step = Step::shake;
     }
-    if (shake(work, options.shake) == StageEnd::cancelled) return StageEnd::cancelled;
+    if (shake(options.shake, in_bed, report) == StageEnd::cancelled) return StageEnd::cancelled;
     step = Step::fill;
   }
   return StageEnd::hit_limit;
@@ -155,7 +155,7 @@ const StageEntry& entry_of<Refill>() {
                              inside(&Shake::compress, compression_keys())))),
            .choices = ends_of_compression()},
           {.in_bed = true, .in_plane = true, .reaches = Reaches::settled}),
-      .act_in_bed = act(refill),
+      .act_in_bed = of_options(refill),
       .may_bring = {"refilling", "neighbour lists", "compression", "shaking"},
       .effects = of_options(effects_of_refilling),
       .require = of_options(+[](const Refill& o, const Domain& domain, double, const FillTask&) {

@@ -34,16 +34,15 @@ bool sweep_until_still(Bed& bed, const Vector<3>& direction, const RollToRest& o
 
 }  // namespace
 
-StageEnd roll_to_rest(Work& work, const Vector<3>& direction, const RollToRest& options) {
-  Bed& bed = work.bed();
+StageEnd roll_to_rest(Bed& bed, Reporter& report, const Vector<3>& direction, const RollToRest& options) {
   int iteration = 0;
-  const Resumable part(work, "roll to rest", [&](Archive& a) { a(iteration); });
+  const Resumable part(report, "roll to rest", [&](Archive& a) { a(iteration); });
   if (!part.resumed()) bed.sort_by_height(direction);
   for (; iteration < options.most_iterations; ++iteration) {
-    if (work.stop()) return StageEnd::cancelled;
+    if (report.stop()) return StageEnd::cancelled;
     bed.enclose(room * bed.mean_radius());
     if (!sweep_until_still(bed, direction, options)) return StageEnd::converged;
-    work.milestone("settle");
+    report.milestone("settle", bed);
   }
   return StageEnd::hit_limit;
 }

@@ -1,5 +1,6 @@
 #pragma once
-#include "work/work.hpp"
+#include "work/bed.hpp"
+#include "work/reporter.hpp"
 
 namespace bernal {
 
@@ -20,6 +21,6 @@ struct RollToRest {
 ///
 /// Cost: about 5 µs for a sphere that falls, 0.3 µs for one at rest; about five iterations for a bed as dense
 /// as settled ones.
-StageEnd roll_to_rest(Work& work, const Vector<3>& direction, const RollToRest& options = {});
+StageEnd roll_to_rest(Bed& bed, Reporter& report, const Vector<3>& direction, const RollToRest& options = {});
 
 }  // namespace bernal

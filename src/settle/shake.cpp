@@ -7,20 +7,20 @@ constexpr int sweeps_a_round = 10;
 
 }  // namespace
 
-StageEnd shake(Work& work, const Shake& options) {
-  Bed& bed = work.bed();
+StageEnd shake(const Shake& options, SpheresInBed& in_bed, Reporter& report) {
+  Bed& bed = in_bed.bed();
   const Vector<3> direction = direction_of(options.compress.direction);
   require_support(bed.container().boundary(), direction);
   int round = 0;
   bool compressing = false;
   StageEnd end = StageEnd::converged;
-  const Resumable part(work, "shake", [&](Archive& a) { a(round, compressing, end); });
+  const Resumable part(report, "shake", [&](Archive& a) { a(round, compressing, end); });
   for (; round < options.rounds; ++round) {
     if (!compressing) {
-      if (work.stop()) return StageEnd::cancelled;
-      const EffectTimer timer(work.effects["shaking"]);
+      if (report.stop()) return StageEnd::cancelled;
+      const EffectTimer timer(report.effects["shaking"]);
       const double radius = bed.mean_radius();
-      Random random = work.random(Stream::shake);
+      Random random = report.random(Stream::shake);
       bed.sort_by_height(direction);
       bed.enclose(options.compress.buffer * radius);
       for (int k = 0; k < sweeps_a_round; ++k) {
@@ -28,9 +28,9 @@ StageEnd shake(Work& work, const Shake& options) {
       }
     }
     compressing = true;
-    end = compress(work, options.compress);
+    end = compress(options.compress, in_bed, report);
     compressing = false;
-    work.milestone("shake");
+    report.milestone("shake", bed);
     if (end == StageEnd::cancelled) return end;
   }
   return end;
@@ -50,7 +50,7 @@ const StageEntry& entry_of<Shake>() {
                inside(&Shake::compress, compression_keys())),
            .choices = ends_of_compression()},
           {.in_bed = true, .in_plane = true, .only_moves = true}),
-      .act_in_bed = act(shake),
+      .act_in_bed = of_options(shake),
       .may_bring = {"neighbour lists", "shaking", "compression"},
       .effects = of_options(effects_of_shaking),
       .require = of_options(+[](const Shake& o, const Domain& domain, double, const FillTask&) {

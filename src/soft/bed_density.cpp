@@ -96,8 +96,7 @@ double porosity_poured(double across) { return 0.390 + 1.740 / ((across + 1.140)
 double porosity_vibrated(double across) { return 0.372 + 0.002 * std::expm1(15.306 / across); }
 double porosity_loose(double across) { return 0.400 + 0.010 * std::expm1(10.686 / across); }
 
-std::optional<BedPorosity> porosity_of(const Work& work, const Heights& heights, const BedTop& top) {
-  const Bed& bed = work.bed();
+std::optional<BedPorosity> porosity_of(const Bed& bed, const Heights& heights, const BedTop& top) {
   double volume = 0, moment = 0;
   for (Bed::Id i = 0; i < bed.size(); ++i) {
     const double own = ball_volume(3, bed[i].r);
@@ -125,9 +124,9 @@ Across across_of(const Container& container, const Vector<3>& down, double mean_
   return {hydraulic_diameter(container, down) / mean_diameter, false};
 }
 
-double mean_diameter(const Work& work, std::size_t count) {
+double mean_diameter(const SpheresInBed& in_bed, std::size_t count) {
   double cubes = 0, squares = 0;
-  for (const double r : work.drawn(count).spheres.r) {
+  for (const double r : in_bed.drawn(count).spheres.r) {
     cubes += r * r * r;
     squares += r * r;
   }

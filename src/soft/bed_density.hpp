@@ -3,7 +3,7 @@
 #include <string>
 
 #include "soft/below_level.hpp"
-#include "work/work.hpp"
+#include "work/spheres_in_bed.hpp"
 
 namespace bernal {
 
@@ -34,7 +34,7 @@ struct BedPorosity {
 
 /// The porosity of the bed of that work; the core of a heap is the whole. Nothing for a few spheres on a
 /// floor, which have no porosity in (0, 1). Error: that of `Heights`. O(N).
-std::optional<BedPorosity> porosity_of(const Work&, const Heights&, const BedTop&);
+std::optional<BedPorosity> porosity_of(const Bed&, const Heights&, const BedTop&);
 
 /// The width of a bed in diameters of its spheres.
 struct Across {
@@ -49,7 +49,7 @@ struct Across {
 /// questions to the walls; the error is then some hundredths.
 Across across_of(const Container&, const Vector<3>& down, double mean_diameter);
 /// 6 V / A of the first `count` spheres of the sequence.
-double mean_diameter(const Work&, std::size_t count);
+double mean_diameter(const SpheresInBed&, std::size_t count);
 
 /// The porosity that a bed is to have.
 struct DensityAim {

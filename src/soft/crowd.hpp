@@ -12,7 +12,7 @@
 #include "core/archive.hpp"
 #include "soft/ground.hpp"
 #include "soft/size_exchange.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
 
 namespace bernal {
 

@@ -18,12 +18,13 @@ constexpr double most_shrinking = 1.1;
 }  // namespace
 
 template <int D>
-std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, bool wide, Work& work) {
+std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, bool wide, SpheresInBox& in_box,
+                                      Reporter& report) {
   SizeExchange sizes(spheres.r, D);
   if (D == 1 || !sizes.is_of_use()) return std::nullopt;
   const double least_edge =
       std::max(edges.minCoeff() / most_shrinking, 2 * most_shrinking * std::ranges::max(spheres.r));
-  SoftEngine<D> engine(spheres, edges, work.walls, 1, wide);
+  SoftEngine<D> engine(spheres, edges, in_box.task.walls, 1, wide);
   double edge = edges.minCoeff(), overlap = 0;
   const float omega = pace_for(0).omega * D / 3;
   const auto compress = [&](double factor) {
@@ -37,12 +38,12 @@ std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, boo
     overlap = engine.sweep_and_measure(omega);
   };
   int k = 0;
-  const Resumable part(work, "exchange in a box", [&](Archive& a) { a(k, edge, overlap, engine); });
+  const Resumable part(report, "exchange in a box", [&](Archive& a) { a(k, edge, overlap, engine); });
   if (!part.resumed()) {
     compress(first_compression);
     sweep(sweeps_an_exchange);
   }
-  for (; k < exchanges && !work.stop(); ++k) {
+  for (; k < exchanges && !report.stop(); ++k) {
     const double done = static_cast<double>(k) / exchanges;
     engine.exchange(sizes.deal(engine.forces(), exchange_step(done)));
     sweep(sweeps_an_exchange);
@@ -51,18 +52,18 @@ std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, boo
       sweep(sweeps_an_exchange);
     }
     if (k % exchanges_a_milestone == 0) {
-      work.edges = edges * (edge / edges.minCoeff());
-      work.milestone("exchange", done, overlap);
+      in_box.edges = edges * (edge / edges.minCoeff());
+      report.milestone("exchange", in_box, overlap, done);
     }
   }
   engine.write_to(spheres, edges);
-  work.edges = edges;
-  work.effects["neighbour lists"] += engine.lists_built();
+  in_box.edges = edges;
+  report.effects["neighbour lists"] += engine.lists_built();
   return overlap;
 }
 
 #define BERNAL_INSTANTIATE(D) \
-  template std::optional<double> exchange_in_box<D>(Spheres<D>&, Vector<D>&, bool, Work&);
+  template std::optional<double> exchange_in_box<D>(Spheres<D>&, Vector<D>&, bool, SpheresInBox&, Reporter&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

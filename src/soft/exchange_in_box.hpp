@@ -1,7 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_box.hpp"
 
 namespace bernal {
 
@@ -15,6 +16,7 @@ namespace bernal {
 /// cancelled, it returns early. The same bits for any number of threads. Cost: 30,000 sweeps and 6,000 sorts,
 /// 0.6 ms a sphere in three dimensions.
 template <int D>
-std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, bool wide, Work& work);
+std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, bool wide, SpheresInBox& in_box,
+                                      Reporter& report);
 
 }  // namespace bernal

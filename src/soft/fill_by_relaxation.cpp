@@ -54,9 +54,9 @@ Spheres<1> in_line(Spheres<1> spheres, double edge, double allowed, Random& rand
 
 /// What reaches beyond a wall goes back to just before it.
 template <int D>
-void move_between_walls(Spheres<D>& spheres, const Vector<D>& edges, const Work& work) {
+void move_between_walls(Spheres<D>& spheres, const Vector<D>& edges, const Task& task) {
   for (int k = 0; k < D; ++k) {
-    if (!work.has_wall(k)) continue;
+    if (!task.has_wall(k)) continue;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       const double low = std::min(before_wall * spheres.r[i], 0.5 * edges[k]);
       double& x = spheres.x[static_cast<std::size_t>(k)][i];
@@ -66,24 +66,26 @@ void move_between_walls(Spheres<D>& spheres, const Vector<D>& edges, const Work&
 }
 
 template <int D>
-Spheres<D> starting_places(const Work& work, Random& random) {
-  Spheres<D> spheres = work.spheres.in<D>();
-  const Vector<D> edges = *work.target_edges;
-  if (work.placed) {
-    Vector<D> now = work.edges;
+Spheres<D> starting_places(const SpheresInBox& in_box, Random& random) {
+  Spheres<D> spheres = in_box.spheres.in<D>();
+  const Vector<D> edges = *in_box.task.target_edges;
+  if (in_box.placed) {
+    Vector<D> now = in_box.edges;
     resize_box<D>(spheres, now, edges);
   } else if constexpr (D == 1) {
-    spheres = in_line(std::move(spheres), edges[0], work.allowed_overlap, random);
+    spheres = in_line(std::move(spheres), edges[0], in_box.task.allowed_overlap, random);
   } else {
     place_at_random(spheres, edges, random);
   }
-  move_between_walls<D>(spheres, edges, work);
+  move_between_walls<D>(spheres, edges, in_box.task);
   return spheres;
 }
 
-/// Those that are left when, again and again, the one that overlaps most others has gone, the last of those.
+/// The numbers of those that are left when, again and again, the one that overlaps most others has gone, the
+/// last of those.
 template <int D>
-Spheres<D> without_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed) {
+std::vector<std::uint32_t> without_overlap(const Spheres<D>& spheres, const Vector<D>& edges,
+                                           double allowed) {
   const auto pairs = overlapping<D>(spheres, edges, allowed);
   std::vector<std::vector<std::uint32_t>> others(spheres.size());
   for (const auto& [i, j] : pairs) {
@@ -104,26 +106,29 @@ Spheres<D> without_overlap(const Spheres<D>& spheres, const Vector<D>& edges, do
     for (const std::uint32_t j : others[i])
       if (most.erase({overlaps[j], j}) > 0 && --overlaps[j] > 0) most.emplace(overlaps[j], j);
   }
-  Spheres<D> left;
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    if (!gone[i]) left.push_back(spheres.center(i), spheres.r[i]);
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t i = 0; i < spheres.size(); ++i)
+    if (!gone[i]) left.push_back(i);
   return left;
 }
 
 template <int D>
 class Filling {
  public:
-  Filling(Work& work, const FillOptions& options, Spheres<D> spheres, const Random& random)
-      : work_(work),
+  Filling(SpheresInBox& in_box, Reporter& report, const FillOptions& options, Spheres<D> spheres,
+          const Random& random)
+      : in_box_(in_box),
+        report_(report),
         options_(options),
         most_sweeps_(options.sweeps),
         random_(random),
-        edges_(*work.target_edges),
-        crowd_(BoxGround<D>(edges_, work.allowed_overlap, work.walls), shaken(std::move(spheres))) {}
+        edges_(*in_box.task.target_edges),
+        crowd_(BoxGround<D>(edges_, in_box.task.allowed_overlap, in_box.task.walls),
+               shaken(std::move(spheres))) {}
 
   StageEnd run() {
     StageEnd end = StageEnd::full;
-    const Resumable part(work_, "filling",
+    const Resumable part(report_, "filling",
                          [&](Archive& a) { a(end, taking_out_, share_out_, most_sweeps_, reported_); });
     if (!taking_out_) {
       end = relax(patience);
@@ -131,33 +136,34 @@ class Filling {
     }
     if ((taking_out_ || (end != StageEnd::converged && end != StageEnd::cancelled)) && !take_out(end))
       end = StageEnd::cancelled;
-    work_.effects["neighbour lists"] += crowd_.lists_built();
-    work_.effects["relaxation"].calls += static_cast<std::uint64_t>(crowd_.sweeps());
-    work_.spheres = without_overlap<D>(crowd_.spheres(), edges_, work_.allowed_overlap);
+    report_.effects["neighbour lists"] += crowd_.lists_built();
+    report_.effects["relaxation"].calls += static_cast<std::uint64_t>(crowd_.sweeps());
+    in_box_.spheres = crowd_.spheres();
+    in_box_.leave(without_overlap<D>(crowd_.spheres(), edges_, in_box_.task.allowed_overlap));
     return end;
   }
 
  private:
   /// Moved by nothing that matters, so that a lattice or a line of spheres does not last for ever.
   Spheres<D> shaken(Spheres<D> spheres) {
-    displace_at_random<D>(spheres, edges_, work_.walls, jitter * std::ranges::min(spheres.r), random_);
+    displace_at_random<D>(spheres, edges_, in_box_.task.walls, jitter * std::ranges::min(spheres.r), random_);
     return spheres;
   }
 
   /// Settles and stirs.
   StageEnd relax(double patience_now) {
     const auto is_free = [this] {
-      return overlapping<D>(crowd_.spheres(), edges_, work_.allowed_overlap).empty();
+      return overlapping<D>(crowd_.spheres(), edges_, in_box_.task.allowed_overlap).empty();
     };
     return crowd_.relax({.patience = patience_now,
                          .hopeless_patience = std::min(patience_now, hopeless_patience),
                          .failures_a_burst = failures_a_burst,
-                         .milestone = [this] { report(); },
+                         .milestone = [this] { tell(); },
                          .is_over = [this] { return crowd_.sweeps() > most_sweeps_; },
                          .most_sweeps = most_sweeps_,
                          .is_free = is_free,
-                         .checkpoints = work_.checkpoints},
-                        work_.monitor, random_);
+                         .checkpoints = report_.checkpoints},
+                        report_.monitor, random_);
   }
 
   /// Fewer and fewer, the last ones first, until the others are free of overlap. Returns false if cancelled.
@@ -174,13 +180,15 @@ class Filling {
     return end != StageEnd::cancelled;
   }
 
-  void report() {
+  void tell() {
     if (crowd_.done() < reported_) return;
     reported_ = crowd_.done() + 0.005;
-    work_.milestone("fill", std::clamp(crowd_.done(), 0.0, 0.99), crowd_.largest_overlap());
+    report_.milestone("fill", in_box_, crowd_.largest_overlap(), crowd_.done());
   }
 
-  Work& work_;
+  SpheresInBox& in_box_;
+
+  Reporter& report_;
   const FillOptions options_;
   double most_sweeps_;
   Random random_;
@@ -192,36 +200,37 @@ class Filling {
 };
 
 template <int D>
-StageEnd fill_box(Work& work, const FillOptions& options) {
-  Random random = work.random(Stream::relax);
-  Spheres<D> spheres = starting_places<D>(work, random);
-  work.edges = *work.target_edges;
-  work.needed_volume = work.edges.prod();
-  work.placed = true;
-  if (!overlapping<D>(spheres, work.edges, work.allowed_overlap).empty())
-    return Filling<D>(work, options, std::move(spheres), random).run();
-  work.spheres = std::move(spheres);
+StageEnd fill_box(SpheresInBox& in_box, Reporter& report, const FillOptions& options) {
+  Random random = report.random(Stream::relax);
+  Spheres<D> spheres = starting_places<D>(in_box, random);
+  in_box.edges = *in_box.task.target_edges;
+  in_box.needed_volume = in_box.edges.prod();
+  in_box.placed = true;
+  if (!overlapping<D>(spheres, in_box.edges, in_box.task.allowed_overlap).empty())
+    return Filling<D>(in_box, report, options, std::move(spheres), random).run();
+  in_box.spheres = std::move(spheres);
   return StageEnd::converged;
 }
 
 }  // namespace
 
-bool fits_box(const Work& work) {
-  const double largest = std::ranges::max(work.spheres.r);
-  return 2 * largest * (1 - work.allowed_overlap) <= work.target_edges->minCoeff();
+bool fits_box(const SpheresInBox& in_box) {
+  const double largest = std::ranges::max(in_box.spheres.r);
+  return 2 * largest * (1 - in_box.task.allowed_overlap) <= in_box.task.target_edges->minCoeff();
 }
 
-StageEnd fill_by_relaxation(Work& work, const FillOptions& options) {
-  if (work.spheres.empty()) return StageEnd::converged;
-  if (!fits_box(work))
+StageEnd fill_by_relaxation(SpheresInBox& in_box, Reporter& report, const FillOptions& options) {
+  if (in_box.spheres.empty()) return StageEnd::converged;
+  if (!fits_box(in_box))
     throw Error(
         ErrorCode::bad_scene,
         fmt::format("the largest sphere is {:.4g} times as wide as the box that is to be filled; give "
                     "more or smaller spheres",
-                    2 * std::ranges::max(work.spheres.r) / work.target_edges->minCoeff()));
-  const EffectTimer timer(work.effects["relaxation"]);
-  return with_dimension(work.dimension(), EveryDimension{},
-                        [&](auto dimension) { return fill_box<decltype(dimension)::value>(work, options); });
+                    2 * std::ranges::max(in_box.spheres.r) / in_box.task.target_edges->minCoeff()));
+  const EffectTimer timer(report.effects["relaxation"]);
+  return with_dimension(in_box.dimension(), EveryDimension{}, [&](auto dimension) {
+    return fill_box<decltype(dimension)::value>(in_box, report, options);
+  });
 }
 
 }  // namespace bernal

@@ -10,7 +10,8 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/soft/relax.hpp"
 #include "soft/soft_packing.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_box.hpp"
 
 namespace bernal {
 
@@ -129,12 +130,18 @@ class GrowthTeller {
  public:
   /// `growth` outlives this. The share `before` of the run was over when the growth began. Precondition:
   /// radii stay. O(N).
-  GrowthTeller(Work& work, const GrowingBox& box, const BoxGrowth& growth, double before = 0)
-      : work_(work), volume_(work.volume_of_spheres()), box_(box), growth_(growth), before_(before) {}
+  GrowthTeller(SpheresInBox& in_box, const Reporter& report, const GrowingBox& box, const BoxGrowth& growth,
+               double before = 0)
+      : in_box_(in_box),
+        report_(report),
+        volume_(in_box.volume_of_spheres()),
+        box_(box),
+        growth_(growth),
+        before_(before) {}
 
   /// Call it at each growth.
   void grown(double factor) {
-    work_.edges *= factor;
+    in_box_.edges *= factor;
     tell(true);
   }
   /// Call it after each sweep: with very many spheres minutes pass between two growths.
@@ -143,15 +150,18 @@ class GrowthTeller {
   }
 
  private:
-  static constexpr double most = 0.99, between = 0.5;  // seconds
+  static constexpr double between = 0.5;  // seconds
 
   void tell(bool for_history) {
     told_ = watch_.seconds();
     done_ = std::max(done_, before_ + (1 - before_) * share_of_work(growth_, box_));
-    work_.box_milestone("relax", volume_, std::min(most, done_), growth_.molr, for_history);
+    report_.milestone("relax", in_box_.spheres.size(), volume_ / in_box_.edges.prod(), growth_.molr, done_,
+                      for_history);
   }
 
-  Work& work_;
+  SpheresInBox& in_box_;
+
+  const Reporter& report_;
   const double volume_;  // of the spheres
   const GrowingBox& box_;
   const BoxGrowth& growth_;
@@ -176,20 +186,20 @@ void have_places(Spheres<D>& spheres) {
 /// return `spheres` and `edges` are those of the end. `begin` says what is known at the start; the share
 /// `before` of the run is over then.
 template <int D, class Engine, class OverlapOf>
-StageEnd let_box_grow(Engine& packing, Spheres<D>& spheres, Vector<D>& edges, Work& work,
-                      const GrowingBox& box, const BoxGrowth& begin, double before, OverlapOf&& overlap_of) {
+StageEnd let_box_grow(Engine& packing, Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box,
+                      Reporter& report, const GrowingBox& box, const BoxGrowth& begin, double before, OverlapOf&& overlap_of) {
   forget_places(spheres.x);
   BoxGrowth growth = begin;
-  const Resumable part(work, "growing box", [&](Archive& a) { a(growth, work.edges, packing); });
-  GrowthTeller teller(work, box, growth, before);
+  const Resumable part(report, "growing box", [&](Archive& a) { a(growth, in_box.edges, packing); });
+  GrowthTeller teller(in_box, report, box, growth, before);
   const auto stop = [&] {
     teller.swept();
-    return work.stop();
+    return report.stop();
   };
   const StageEnd end = grow_apart<D>(packing, box, growth, stop, overlap_of,
                                      [&](double factor, double) { teller.grown(factor); });
-  work.effects["neighbour lists"] += packing.lists_built();
-  work.effects["relaxation"].calls += sweeps_of(growth, box, end);
+  report.effects["neighbour lists"] += packing.lists_built();
+  report.effects["relaxation"].calls += sweeps_of(growth, box, end);
   have_places(spheres);
   packing.write_to(spheres, edges);
   return end;

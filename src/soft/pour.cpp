@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -28,128 +29,118 @@ constexpr double one_layer = 1.0005;
 /// Vessels less wide, in mean radii, hold what happens to fit.
 constexpr double narrow_vessel = 3;
 
-/// The spheres of the bed in one of another container, those that fit, with their places in the sequence.
-void change_container(Work& work, std::shared_ptr<const Container> to) {
-  const std::shared_ptr<Bed> before = work.bed_;
-  work.container = std::move(to);
-  work.roomiest_.reset();
-  work.bed_ = std::make_shared<Bed>(*work.container, work.supply->smallest(), work.supply->largest(),
-                                    work.supply->wanted(), work.effects);
-  if (!before) return;
-  std::vector<bool> placed;
-  for (Bed::Id i = 0; i < before->size(); ++i) {
-    const std::uint32_t tag = before->tag(i);
-    if (placed.size() <= tag) placed.resize(tag + std::size_t{1}, false);
-    placed[tag] = work.fits_in_bed((*before)[i].center, (*before)[i].r);
-    if (placed[tag]) work.bed_->insert((*before)[i].center, (*before)[i].r, tag);
-  }
-  work.supply->set_placed(placed);
-}
-
 /// Of the stage's progress, what relaxation takes.
 constexpr double share_of_relaxation = 0.9;
 
 /// What is told of relaxation in a part of the container is told of the whole, and never less than before.
-std::function<void(const Course&)> as_of_whole(const Work& work, const Work& poured) {
-  return [&work, &poured, furthest = 0.0](const Course& of_part) mutable {
-    if (!work.on_course) return;
-    Course course = of_part;
-    course.stage = "settle";
-    course.packing_fraction *= poured.container->volume() / work.container->volume();
-    furthest = std::max(furthest, share_of_relaxation * course.done.value_or(0));
-    course.done = furthest;
-    work.on_course(course);
+std::function<void(const StageProgress&)> as_of_whole(const Reporter& whole, const Task& task,
+                                                      const Task& part) {
+  return [&whole, &task, &part, furthest = 0.0](const StageProgress& of_part) mutable {
+    if (!whole.on_progress) return;
+    StageProgress progress = of_part;
+    progress.stage = "settle";
+    progress.packing_fraction *= part.container->volume() / task.container->volume();
+    furthest = std::max(furthest, share_of_relaxation * progress.done.value_or(0));
+    progress.done = furthest;
+    whole.on_progress(progress);
   };
 }
 
-void put_in_bed(const Bed& poured, const std::vector<std::uint32_t>& tags, std::vector<bool> placed,
-                Work& work) {
-  for (Bed::Id i = 0; i < poured.size(); ++i) {
-    const std::uint32_t tag = tags[poured.tag(i)];
+/// The spheres of another bed, those that fit, with their places in the sequence, in which others are
+/// `placed` already.
+template <class TagOf>
+void take_over(SpheresInBed& in_bed, const Bed& other, TagOf&& tag_of, std::vector<bool> placed) {
+  for (Bed::Id i = 0; i < other.size(); ++i) {
+    const std::uint32_t tag = tag_of(other.tag(i));
     if (placed.size() <= tag) placed.resize(tag + std::size_t{1}, false);
-    placed[tag] = work.fits_in_bed(poured[i].center, poured[i].r);
-    if (placed[tag]) work.bed().insert(poured[i].center, poured[i].r, tag);
+    placed[tag] = in_bed.fits_in_bed(other[i].center, other[i].r);
+    if (placed[tag]) in_bed.bed().insert(other[i].center, other[i].r, tag);
   }
-  work.supply->set_placed(placed);
+  in_bed.supply->set_placed(placed);
 }
 
 }  // namespace
 
-StageEnd rest_first(Work& work, const Vector<3>& down, double still) {
-  const std::vector<bool> placed = work.drawn(0).placed;
-  std::vector<std::uint32_t> tags;
-  for (std::uint32_t tag = 0; tag < placed.size(); ++tag)
-    if (placed[tag]) tags.push_back(tag);
-  Work own = work.alone(tags);
-  change_container(own, work.container);
-  for (Bed::Id i = 0; i < work.bed().size(); ++i) {
-    const auto at = std::ranges::lower_bound(tags, work.bed().tag(i)) - tags.begin();
-    own.bed().insert(work.bed()[i].center, work.bed()[i].r, static_cast<std::uint32_t>(at));
+StageEnd rest_first(Bed& bed, const Reporter& report, const Vector<3>& down, double still) {
+  if (bed.size() == 0) return StageEnd::converged;
+  double smallest = bed[0].r, largest = smallest;
+  for (Bed::Id i = 0; i < bed.size(); ++i) {
+    smallest = std::min(smallest, bed[i].r);
+    largest = std::max(largest, bed[i].r);
   }
-  const StageEnd end = roll_to_rest(own, down, {.still = still});
-  work.bed().remove_tags_from(0);
-  for (Bed::Id i = 0; i < own.bed().size(); ++i)
-    work.bed().insert(own.bed()[i].center, own.bed()[i].r, tags[own.bed().tag(i)]);
+  Bed own(bed.container(), smallest, largest, bed.size(), report.effects);
+  for (Bed::Id i = 0; i < bed.size(); ++i) own.insert(bed[i].center, bed[i].r, bed.tag(i));
+  Reporter of_own = report.alone();
+  const StageEnd end = roll_to_rest(own, of_own, down, {.still = still});
+  bed.remove_tags_from(0);
+  for (Bed::Id i = 0; i < own.size(); ++i) bed.insert(own[i].center, own[i].r, own.tag(i));
   return end;
 }
 
-StageEnd pour(Work& work, const BedTop& top, const std::shared_ptr<const Container>& whole,
-              const Heights& heights, Laying& how) {
-  const std::vector<bool> placed = work.drawn(0).placed;
+StageEnd pour(SpheresInBed& in_bed, Reporter& report, const BedTop& top,
+              const std::shared_ptr<const Container>& whole, const Heights& heights, Laying& how) {
+  const std::vector<bool> placed = in_bed.drawn(0).placed;
   std::vector<std::uint32_t> tags;
-  for (std::uint32_t tag = 0; tag < work.supply->wanted(); ++tag)
+  for (std::uint32_t tag = 0; tag < in_bed.supply->wanted(); ++tag)
     if (tag >= placed.size() || !placed[tag]) tags.push_back(tag);
   if (tags.empty()) return StageEnd::converged;
   const double ground = heights.ground();
 
   double volume = 0, largest = 0;
   const std::size_t wanted =
-      work.target_count() - std::min<std::size_t>(work.target_count(), work.bed().size());
+      in_bed.target_count() - std::min<std::size_t>(in_bed.target_count(), in_bed.bed().size());
   const std::span first_tags = std::span(tags).first(std::min(tags.size(), wanted));
   for (const std::uint32_t tag : first_tags) {
-    volume += ball_volume(3, work.supply->radius(tag));
-    largest = std::max(largest, work.supply->radius(tag));
+    volume += ball_volume(3, in_bed.supply->radius(tag));
+    largest = std::max(largest, in_bed.supply->radius(tag));
   }
   const double mean =
       std::cbrt(volume / ball_volume(3, 1) / std::max<double>(1, static_cast<double>(first_tags.size())));
-  const double given = work.target.bed.above_ground;
+  const double given = in_bed.task.target.bed.above_ground;
   // One layer lies on the floor in the end, and may lie a little higher before.
   const double height = ground + (given < one_layer * 2 * largest ? one_layer * 2 * largest : given);
   const double room = given > 0 ? heights.volume_below(height) : whole->volume();
   // A layer is no shallower than its largest sphere.
   volume = std::max(volume / how.packing_fraction, heights.volume_below(ground + room_for_largest * largest));
 
-  Work poured = work.alone(tags);
-  poured.on_course = as_of_whole(work, poured);
-  if (!work.target.fill && (given > 0 || volume > room)) {
+  Task part = in_bed.task;  // of the container
+  Reporter of_part = report.alone();
+  of_part.on_progress = as_of_whole(report, in_bed.task, part);
+  if (!in_bed.task.target.fill && (given > 0 || volume > room)) {
     // As many as are expected to fit; where walls are near everywhere nobody knows, and all are tried.
-    const bool is_narrow = work.roomiest().radius < narrow_vessel * mean && !how.is_aimed;
+    const bool is_narrow = in_bed.roomiest().radius < narrow_vessel * mean && !how.is_aimed;
     if (!is_narrow)
-      poured.target = Target{}, poured.attainable = how.packing_fraction;
+      part.target = Target{}, part.attainable = how.packing_fraction;
     else if (given > 0)
-      poured.target = Target{.fill = true};
+      part.target = Target{.fill = true};
     volume = room;
   }
-  poured.crowded_start = work.crowded_start;
+  const auto supply = std::make_shared<Supply>(in_bed.supply->of(tags));
+  std::optional<SpheresInBed> poured;
   StageEnd end = StageEnd::full;
   how.finds_room = true;
   for (double rise = how.taps > 0 ? first_rise_tapped : first_rise; end == StageEnd::full && room > 0;
        volume *= 1 + rise, rise *= 2) {
     const bool to_the_brim = volume >= whole->volume();
-    change_container(
-        poured, to_the_brim
-                    ? whole
-                    : cut_by_planes(whole, top.planes(given > 0 ? height : heights.holding(volume)), volume));
-    if (how.taps > 0 && how.finds_room) tap(poured, how.taps, how.first_tap);
-    end = relax_in_container(poured, {.patience = how.taps > 0 ? patience_with_tapped : Relax{}.patience});
+    const double level = given > 0 ? height : heights.holding(volume);
+    part.container = to_the_brim ? whole : cut_by_planes(whole, top.planes(level), volume);
+    SpheresInBed now(part, supply, report.effects);
+    now.crowded_start = poured ? std::move(poured->crowded_start) : in_bed.crowded_start;
+    if (poured) take_over(now, poured->bed(), std::identity(), {});
+    poured.emplace(std::move(now));
+    if (how.taps > 0 && how.finds_room) tap(*poured, of_part, how.taps, how.first_tap);
+    end = relax_in_container({.patience = how.taps > 0 ? patience_with_tapped : Relax{}.patience}, *poured,
+                             of_part);
     how.finds_room = how.finds_room && end != StageEnd::full;
-    if (to_the_brim || given > 0 || poured.target.is_open()) break;
+    if (to_the_brim || given > 0 || part.target.is_open()) break;
     // What fits only touching both the level and walls is squeezed in: the level is too low.
-    if (poured.is_snug(largest) && !work.is_snug(largest)) end = StageEnd::full;
+    if (poured->is_snug(largest) && !in_bed.is_snug(largest)) end = StageEnd::full;
   }
-  work.streams_used = poured.streams_used;
-  if (how.taps > 0) work.crowded_start = poured.crowded_start;
-  if (poured.stands_in_bed()) put_in_bed(poured.bed(), tags, placed, work);
+  report.streams_used = of_part.streams_used;
+  if (!poured) return end;
+  if (how.taps > 0) in_bed.crowded_start = poured->crowded_start;
+  take_over(
+      in_bed, poured->bed(), [&](std::uint32_t place) { return tags[place]; }, placed);
   return end;
 }
 

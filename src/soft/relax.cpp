@@ -35,75 +35,81 @@ constexpr double least_saved = 5e-4;
 /// Moves, in mean radii, that break the symmetry of spheres which come in a lattice or in line.
 constexpr double first_jitter = 1e-6;
 
-bool is_loose(const Work& work) {
-  return work.target_edges && work.volume_of_spheres() < loose * random_close_packing[work.dimension() - 1] *
-                                                             work.target_edges->prod();
+bool is_loose(const SpheresInBox& in_box) {
+  const std::optional<Vector<dynamic>>& target = in_box.task.target_edges;
+  return target &&
+         in_box.volume_of_spheres() < loose * random_close_packing[in_box.dimension() - 1] * target->prod();
 }
 
 /// Whether the spheres of a start have places, and nothing asks for others.
-bool begins_as_it_is(const Work& work, const Relax& options) {
-  return work.begun > 0 && work.placed && !options.phi0;
+bool begins_as_it_is(const SpheresInBox& in_box, const Relax& options) {
+  return in_box.begun > 0 && in_box.placed && !options.phi0;
 }
 
 /// Whether spheres are as dense where they begin as relaxation makes them: then they are relaxed from there,
 /// and not from a denser state, which would make another packing of them.
-bool begins_in_its_box(const Work& work, const Relax& options) {
-  return begins_as_it_is(work, options) &&
-         work.volume_of_spheres() >= loose * random_close_packing[work.dimension() - 1] * work.edges.prod();
+bool begins_in_its_box(const SpheresInBox& in_box, const Relax& options) {
+  return begins_as_it_is(in_box, options) &&
+         in_box.volume_of_spheres() >=
+             loose * random_close_packing[in_box.dimension() - 1] * in_box.edges.prod();
 }
 
 /// Whether they begin in the box that is asked for, free of overlap.
 template <int D>
-bool is_done(const Spheres<D>& spheres, const Vector<D>& edges, const Work& work, const Relax& options) {
-  return begins_as_it_is(work, options) && work.target_edges && work.edges == *work.target_edges &&
-         is_free_of_overlap<D>(spheres, edges, work.walls);
+bool is_done(const Spheres<D>& spheres, const Vector<D>& edges, const SpheresInBox& in_box,
+             const Relax& options) {
+  const std::optional<Vector<dynamic>>& target = in_box.task.target_edges;
+  return begins_as_it_is(in_box, options) && target && in_box.edges == *target &&
+         is_free_of_overlap<D>(spheres, edges, in_box.task.walls);
 }
 
 /// Whether sizes are wide and spheres are to be as dense as they can.
-bool begins_from_largest(const Work& work, const Relax& options) {
-  const bool there = work.placed || work.begun > 0;
-  return is_for_wide_sizes(work.fill_task, options) && !there && !is_loose(work) &&
-         options.phi0.value_or(1) >= std::min(dense_start(work.dimension()), work.fill_task.attainable);
+bool begins_from_largest(const SpheresInBox& in_box, const Relax& options) {
+  const bool there = in_box.placed || in_box.begun > 0;
+  const FillTask& task = in_box.task.fill_task;
+  return is_for_wide_sizes(task, options) && !there && !is_loose(in_box) &&
+         options.phi0.value_or(1) >= std::min(dense_start(in_box.dimension()), task.attainable);
 }
 
 /// Those they begin in, or of phi0, or about those that are asked for; never so small that a sphere overlaps
 /// its own image.
-Vector<dynamic> edges_to_start_from(const Work& work, const Relax& options) {
-  const int dimension = work.dimension();
+Vector<dynamic> edges_to_start_from(const SpheresInBox& in_box, const Relax& options) {
+  const int dimension = in_box.dimension();
   const double usual = dense_start(dimension);
   double phi0 = options.phi0.value_or(usual);
-  if (phi0 == usual && begins_from_largest(work, options)) phi0 = wide_start(work.fill_task);
+  if (phi0 == usual && begins_from_largest(in_box, options)) phi0 = wide_start(in_box.task.fill_task);
   const auto with_volume = [&](double volume) -> Vector<dynamic> {
-    return work.edges * std::pow(volume / work.edges.prod(), 1.0 / dimension);
+    return in_box.edges * std::pow(volume / in_box.edges.prod(), 1.0 / dimension);
   };
-  Vector<dynamic> edges = with_volume(work.volume_of_spheres() / phi0);
-  if (begins_in_its_box(work, options)) {
-    edges = work.edges;
-  } else if (work.target_edges) {
-    const double asked = work.target_edges->prod();
-    if (is_loose(work) || edges.prod() > asked) edges = with_volume((1 - room_to_grow) * asked);
+  Vector<dynamic> edges = with_volume(in_box.volume_of_spheres() / phi0);
+  if (begins_in_its_box(in_box, options)) {
+    edges = in_box.edges;
+  } else if (in_box.task.target_edges) {
+    const double asked = in_box.task.target_edges->prod();
+    if (is_loose(in_box) || edges.prod() > asked) edges = with_volume((1 - room_to_grow) * asked);
   }
-  const double needed = 2 * std::ranges::max(work.spheres.r) / edges.minCoeff();
+  const double needed = 2 * std::ranges::max(in_box.spheres.r) / edges.minCoeff();
   return needed > 1 ? Vector<dynamic>(edges * (needed * (1 + 4 * tolerance::roundoff))) : edges;
 }
 
 /// Places for spheres that have none. Those of others are moved by nothing that matters, so that a lattice or
 /// a line of spheres does not last for ever.
 template <int D>
-StageEnd place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Work& work,
-               const Relax& options) {
+StageEnd place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, SpheresInBox& in_box,
+               Reporter& report, const Relax& options) {
   if constexpr (D == 2 || D == 3)
-    if (begins_from_largest(work, options)) {
-      work.edges = edges = start;
-      return place_from_largest<D>(spheres, edges, work, options);
+    if (begins_from_largest(in_box, options)) {
+      in_box.edges = edges = start;
+      return place_from_largest<D>(spheres, edges, in_box, report, options);
     }
-  Random random = work.random(Stream::relax);
-  const std::size_t there = work.placed ? spheres.size() : work.begun;
+  Random random = report.random(Stream::relax);
+  const std::size_t there = in_box.placed ? spheres.size() : in_box.begun;
   if (there == 0) {
     edges = start;
   } else {
     resize_box<D>(spheres, edges, start);
-    displace_at_random<D>(spheres, edges, work.walls, first_jitter * std::ranges::max(spheres.r), random);
+    displace_at_random<D>(spheres, edges, in_box.task.walls, first_jitter * std::ranges::max(spheres.r),
+                          random);
   }
   place_at_random<D>(spheres, edges, random, there);
   return StageEnd::converged;
@@ -111,9 +117,9 @@ StageEnd place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Wo
 
 /// Whether growing the box by the overlap that counts as none is all that there is to do.
 template <int D>
-bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Work& work,
+bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const SpheresInBox& in_box,
                      const Relax& options) {
-  const Vector<D> free = edges_free_of_overlap<D>(spheres, edges, 0, work.walls);
+  const Vector<D> free = edges_free_of_overlap<D>(spheres, edges, 0, in_box.task.walls);
   return free[0] <= edges[0] / (1 - options.stop);
 }
 
@@ -137,67 +143,68 @@ bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Wo
 /// are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists included; 0.07 µs in four
 /// dimensions and 0.13 µs in eight, lists not included.
 template <int D>
-StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap) {
-  const GrowingBox box{.stop = least_overlap(options, work.allowed_overlap),
+StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report, const Relax& options, double overlap) {
+  const GrowingBox box{.stop = least_overlap(options, in_box.task.allowed_overlap),
                        .sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough_for_sweeps)),
                        .beta = options.beta};
   const auto grow = [&](auto& packing) {
-    return let_box_grow<D>(packing, spheres, edges, work, box, {.molr = overlap}, 0,
+    return let_box_grow<D>(packing, spheres, edges, in_box, report, box, {.molr = overlap}, 0,
                            [](int, double molr) { return molr; });
   };
   if constexpr (D == 3)
     if (options.device == RelaxDevice::gpu) {
       DevicePacking packing(spheres, edges, spheres_on_gpu());
       const StageEnd end = grow(packing);
-      work.account = "on " + packing.device_name();
+      report.account = "on " + packing.device_name();
       return end;
     }
-  SoftEngine<D> packing(spheres, edges, work.walls);
+  SoftEngine<D> packing(spheres, edges, in_box.task.walls);
   return grow(packing);
 }
 
 /// `overlap` is the largest overlap ratio at the start, where it is known.
 template <int D>
-StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options,
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report, const Relax& options,
                     std::optional<double> overlap = {}) {
   have_places(spheres);
   if constexpr (D == 2 || D == 3)
-    if (is_for_wide_sizes(work.fill_task, options))
-      return relax_wide<D>(spheres, edges, work, options, overlap.value_or(1),
-                           !overlap && begins_from_largest(work, options) ? share_of_placing : 0);
+    if (is_for_wide_sizes(in_box.task.fill_task, options))
+      return relax_wide<D>(spheres, edges, in_box, report, options, overlap.value_or(1),
+                           !overlap && begins_from_largest(in_box, options) ? share_of_placing : 0);
   return options.method == RelaxMethod::fast
-             ? relax_fast<D>(spheres, edges, work, options, overlap.value_or(1))
-             : relax_by_the_book<D>(spheres, edges, work, options);
+             ? relax_fast<D>(spheres, edges, in_box, report, options, overlap.value_or(1))
+             : relax_by_the_book<D>(spheres, edges, in_box, report, options);
 }
 
 /// Takes spheres that just do not overlap to a denser packing of the same sizes, if that is found.
 template <int D>
-StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
-  EffectTimer timer(work.effects["exchange"]);
+StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
+                        const Relax& options) {
+  EffectTimer timer(report.effects["exchange"]);
   Spheres<D> ordinary = spheres;
   Vector<D> ordinary_edges = edges;
-  const bool wide = is_for_wide_sizes(work.fill_task, options);
+  const bool wide = is_for_wide_sizes(in_box.task.fill_task, options);
   bool exchanged = false;
   std::optional<double> overlap;
-  const Resumable part(work, "exchange", [&](Archive& a) {
+  const Resumable part(report, "exchange", [&](Archive& a) {
     a(exchanged, overlap);
     if (exchanged) a(ordinary, ordinary_edges, spheres, edges);
   });
-  if (!exchanged) overlap = exchange_in_box<D>(spheres, edges, wide, work);
+  if (!exchanged) overlap = exchange_in_box<D>(spheres, edges, wide, in_box, report);
   exchanged = true;
   if (!overlap) {
-    work.account = "without an exchange of sizes: they are equal or too far apart";
+    report.account = "without an exchange of sizes: they are equal or too far apart";
     return StageEnd::converged;
   }
-  const StageEnd end = push_apart<D>(spheres, edges, work, options, overlap);
-  free_of_overlap<D>(spheres, edges, work);
+  const StageEnd end = push_apart<D>(spheres, edges, in_box, report, options, overlap);
+  free_of_overlap<D>(spheres, edges, in_box.task, report);
   const double saved = 1 - edges.prod() / ordinary_edges.prod();
   if (saved > least_saved) {
-    work.account = fmt::format("after an exchange of sizes that took {:.1f} % off the {} that they need",
-                               100 * saved, D == 2 ? "area" : "volume");
+    report.account = fmt::format("after an exchange of sizes that took {:.1f} % off the {} that they need",
+                                 100 * saved, D == 2 ? "area" : "volume");
   } else {
-    work.account = end == StageEnd::cancelled ? "without the exchange of sizes, which was not finished"
-                                              : "without an exchange of sizes, which found nothing denser";
+    report.account = end == StageEnd::cancelled ? "without the exchange of sizes, which was not finished"
+                                                : "without an exchange of sizes, which found nothing denser";
     spheres = ordinary;
     edges = ordinary_edges;
   }
@@ -205,54 +212,54 @@ StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, Work& work, const
 }
 
 template <int D>
-StageEnd relax_in(Work& work, const Relax& options) {
+StageEnd relax_in(SpheresInBox& in_box, Reporter& report, const Relax& options) {
   const bool by_the_book = options.method != RelaxMethod::fast;
-  if (!work.walls.empty() && by_the_book)
+  if (!in_box.task.walls.empty() && by_the_book)
     throw Error(ErrorCode::bad_scene, "the reference method of relax knows no walls; leave \"method\" out");
-  Spheres<D> spheres = work.spheres.in<D>();
+  Spheres<D> spheres = in_box.spheres.in<D>();
   have_places(spheres);
-  if (!work.placed && work.begun == 0) forget_places(work.spheres.x);  // for there are none yet
-  Vector<D> edges = work.edges;
+  if (!in_box.placed && in_box.begun == 0) forget_places(in_box.spheres.x);  // for there are none yet
+  Vector<D> edges = in_box.edges;
   enum class Step { place, push, exchange, finish } step = Step::place;
   StageEnd end = StageEnd::converged;
   int starts = 1;
-  const bool loose_box = is_loose(work);
+  const bool loose_box = is_loose(in_box);
   const auto finish = [&] {
     step = Step::finish;
     const double polish_to = loose_box ? 0 : options.polish;
     // While it is polished, a checkpoint has what that began with.
-    end =
-        finish_in_periodic_box<D>(polish_to > 0 ? spheres : std::move(spheres), edges, end, polish_to, work);
-    return loose_box ? end_in_larger_box(end, options.polish, work) : end;
+    end = finish_in_periodic_box<D>(polish_to > 0 ? spheres : std::move(spheres), edges, end, polish_to,
+                                    in_box, report);
+    return loose_box ? end_in_larger_box(end, options.polish, report) : end;
   };
   Vector<D> start = edges;
-  const Resumable part(work, "relax", [&](Archive& a) {
-    a(step, end, starts, start, edges, work.edges);
+  const Resumable part(report, "relax", [&](Archive& a) {
+    a(step, end, starts, start, edges, in_box.edges);
     if (step >= Step::exchange) a(spheres);  // before that, engines have their places
   });
-  if (!part.resumed() && is_done<D>(spheres, edges, work, options)) return finish();
-  if (!part.resumed()) start = edges_to_start_from(work, options);
-  if (!part.resumed() && begins_in_its_box(work, options) &&
-      hardly_overlaps<D>(spheres, edges, work, options)) {
-    free_of_overlap<D>(spheres, edges, work);
+  if (!part.resumed() && is_done<D>(spheres, edges, in_box, options)) return finish();
+  if (!part.resumed()) start = edges_to_start_from(in_box, options);
+  if (!part.resumed() && begins_in_its_box(in_box, options) &&
+      hardly_overlaps<D>(spheres, edges, in_box, options)) {
+    free_of_overlap<D>(spheres, edges, in_box.task, report);
     step = Step::exchange;
   }
   if (step == Step::place) {
-    end = place<D>(spheres, edges, start, work, options);
+    end = place<D>(spheres, edges, start, in_box, report, options);
     step = Step::push;
   }
   for (const int most_starts = loose_box ? most_starts_in_a_loose_box : 1; step == Step::push; ++starts) {
-    work.edges = edges;
-    if (end == StageEnd::converged) end = push_apart<D>(spheres, edges, work, options);
-    free_of_overlap<D>(spheres, edges, work);
+    in_box.edges = edges;
+    if (end == StageEnd::converged) end = push_apart<D>(spheres, edges, in_box, report, options);
+    free_of_overlap<D>(spheres, edges, in_box.task, report);
     if (end != StageEnd::converged || starts == most_starts ||
-        lies_within<D>(spheres, edges, *work.target_edges))
+        lies_within<D>(spheres, edges, *in_box.task.target_edges))
       step = Step::exchange;
     else
       resize_box<D>(spheres, edges, start);
   }
   if (step == Step::exchange && options.exchange && end == StageEnd::converged && !loose_box)
-    end = exchange_sizes<D>(spheres, edges, work, options);
+    end = exchange_sizes<D>(spheres, edges, in_box, report, options);
   return finish();
 }
 
@@ -264,10 +271,11 @@ int sweeps_a_cycle(const Relax& options, std::size_t spheres) {
   return std::max(1, static_cast<int>(std::lround(options.alpha * decades * decades)));
 }
 
-StageEnd relax(Work& work, const Relax& options) {
-  EffectTimer timer(work.effects["relaxation"]);
-  return with_dimension(work.dimension(), EveryDimension{},
-                        [&](auto dimension) { return relax_in<decltype(dimension)::value>(work, options); });
+StageEnd relax(const Relax& options, SpheresInBox& in_box, Reporter& report) {
+  EffectTimer timer(report.effects["relaxation"]);
+  return with_dimension(in_box.dimension(), EveryDimension{}, [&](auto dimension) {
+    return relax_in<decltype(dimension)::value>(in_box, report, options);
+  });
 }
 
 }  // namespace bernal

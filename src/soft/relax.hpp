@@ -41,7 +41,7 @@ int sweeps_a_cycle(const Relax& options, std::size_t spheres);
 ///
 /// Cost: about alpha (log10 N)² ln(1/stop) sweeps. When it is cancelled, the spheres are free of overlap in a
 /// box that is larger than necessary.
-StageEnd relax(Work& work, const Relax& options);
+StageEnd relax(const Relax& options, SpheresInBox& in_box, Reporter& report);
 
 /// The published loop as it stands, in double: the method of the paper, and the oracle of the fast engine. A
 /// sweep moves spheres in place, in the order of their numbers, and finds them by the background grid and its
@@ -60,7 +60,8 @@ StageEnd relax(Work& work, const Relax& options);
 /// sweep. Cost: about 0.25 µs a sphere and sweep in three dimensions. Source: Zhao, Li & Liu 2007, section 2
 /// and figure 7.
 template <int D>
-StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options);
+StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
+                           const Relax& options);
 
 /// Random close packing in a container with the sizes as they were drawn.
 ///
@@ -82,6 +83,6 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, co
 ///
 /// Cost: 300 sweeps where there is room to spare, some thousand where there is not; about 20 ns a sphere and
 /// sweep and 50 ns more for one at the wall.
-StageEnd relax_in_container(Work& work, const Relax& options);
+StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report);
 
 }  // namespace bernal

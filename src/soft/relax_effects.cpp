@@ -51,7 +51,7 @@ struct Hardness {
   double first, difficulty, limit, most;
   double of(double h) const { return first + difficulty / std::pow(limit - std::min(h, most), 2); }
 };
-constexpr Hardness between_walls{2, 0.25, 1.093, 1.03}, in_box{2, 0.1, 1.055, 1.02};
+constexpr Hardness between_walls{2, 0.25, 1.093, 1.03}, in_given_box{2, 0.1, 1.055, 1.02};
 /// As many as can be placed: those for which there is no room are tried, too.
 constexpr double factor_of_filling = 8;
 /// Where all are at walls, they have so many times more to try.
@@ -138,7 +138,7 @@ std::vector<PlanItem> effects_of_pushing(double seconds, const Outlook& outlook,
 }
 
 double seconds_of_filling_box(const Outlook& outlook) {
-  return microsecond * outlook.spheres * in_box.of(outlook.aim / outlook.task.attainable) *
+  return microsecond * outlook.spheres * in_given_box.of(outlook.aim / outlook.task.attainable) *
          dimension_factor(outlook) * std::pow(outlook.spread, cost_of_spread);
 }
 

@@ -116,8 +116,8 @@ const StageEntry& entry_of<Relax>() {
            .choices = {{{"alpha"}, {"period"}}},
            .complete = completion(complete_relax)},
           traits),
-      .act_in_bed = act(relax_in_container),
-      .act_in_box = act(relax),
+      .act_in_bed = of_options(relax_in_container),
+      .act_in_box = of_options(relax),
       .may_bring = {"insertion", "neighbour lists", "relaxation", "exchange", "polish"},
       .effects = of_options(effects_of_relaxation),
       .require =

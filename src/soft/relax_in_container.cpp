@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -37,20 +38,23 @@ constexpr std::size_t places_a_task = 1024;
 
 class Relaxation {
  public:
-  Relaxation(Work& work, const Relax& options)
-      : work_(work),
+  Relaxation(SpheresInBed& in_bed, Reporter& report, const Relax& options)
+      : in_bed_(in_bed),
+        report_(report),
         options_(options),
-        random_(work.random(Stream::relax)),
-        skin_(work.bed().skin() > thin_skin * work.supply->smallest() ? work.bed().skin() : 0),
-        gain_(options.exchange ? gain_by_exchange(SizeExchange(work.supply->radii(), 3).spread(), true) : 1),
-        snug_(SnugPlaces(work).all_touch()),
-        crowd_(ContainerGround(work.bed().container(), work.bed().places(), snug_), spheres_to_start_from()),
-        target_count_(std::max(crowd_.size(), work.target_count())) {}
+        random_(report.random(Stream::relax)),
+        skin_(in_bed.bed().skin() > thin_skin * in_bed.supply->smallest() ? in_bed.bed().skin() : 0),
+        gain_(options.exchange ? gain_by_exchange(SizeExchange(in_bed.supply->radii(), 3).spread(), true)
+                               : 1),
+        snug_(SnugPlaces(in_bed, report).all_touch()),
+        crowd_(ContainerGround(in_bed.bed().container(), in_bed.bed().places(), snug_),
+               spheres_to_start_from()),
+        target_count_(std::max(crowd_.size(), in_bed.target_count())) {}
 
   StageEnd run() {
     enum class Step { free, exchange, push_in } step = Step::free;
     bool free = false, limited = false;
-    const Resumable part(work_, "relaxation", [&](Archive& a) {
+    const Resumable part(report_, "relaxation", [&](Archive& a) {
       a(step, free, limited, share_out_, patience_, random_, over_, sweeps_of_exchange_);
     });
     if (step == Step::free) {
@@ -65,14 +69,14 @@ class Relaxation {
     // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
     bool all_there = put_in_bed();
     for (int k = 0; !all_there && free && !cancelled_ && k < most_hand_overs; ++k) {
-      cancelled_ = crowd_.settle(work_.monitor, [this] { report(); }) == StageEnd::cancelled;
+      cancelled_ = crowd_.settle(report_.monitor, [this] { tell(); }) == StageEnd::cancelled;
       all_there = put_in_bed();
     }
-    work_.effects["neighbour lists"] += crowd_.lists_built();
-    work_.effects["relaxation"].calls += static_cast<std::uint64_t>(crowd_.sweeps());
+    report_.effects["neighbour lists"] += crowd_.lists_built();
+    report_.effects["relaxation"].calls += static_cast<std::uint64_t>(crowd_.sweeps());
     if (cancelled_) return StageEnd::cancelled;
     if (!all_there || crowd_.size() < target_count_) place_snugly();
-    if (work_.bed().size() >= target_count_) return StageEnd::converged;
+    if (in_bed_.bed().size() >= target_count_) return StageEnd::converged;
     return limited ? StageEnd::hit_limit : StageEnd::full;
   }
 
@@ -80,19 +84,20 @@ class Relaxation {
   /// The first of the drawn sequence, those in the bed or of the start where they are and the others at
   /// random: as many as are asked for, or a few more than are likely to fit.
   Spheres<3> spheres_to_start_from() {
-    const double most = (work_.target.fill ? 1 : most_of_attainable) / gain_;
-    const std::size_t count = std::min(work_.target_count(), work_.count_filling(most * work_.attainable));
-    auto [spheres, placed] = work_.drawn(std::max<std::size_t>(1, count));
-    const Spheres<3>& begun = work_.crowded_start;
+    const double most = (in_bed_.task.target.fill ? 1 : most_of_attainable) / gain_;
+    const std::size_t count =
+        std::min(in_bed_.target_count(), in_bed_.count_filling(most * in_bed_.task.attainable));
+    auto [spheres, placed] = in_bed_.drawn(std::max<std::size_t>(1, count));
+    const Spheres<3>& begun = in_bed_.crowded_start;
     const std::uint64_t seed = random_();
-    const Interruptible listening(work_.monitor);
+    const Interruptible listening(report_.monitor);
     parallel_ranges(spheres.size(), places_a_task, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         if (placed[i]) continue;
         Random own(seed, i);
         spheres.set_center(i, i < begun.size() ? begun.center(i)
-                                               : clear_place(spheres.r[i], work_.bed().container(),
-                                                             work_.bed().places(), own, work_.monitor));
+                                               : clear_place(spheres.r[i], in_bed_.bed().container(),
+                                                             in_bed_.bed().places(), own, report_.monitor));
       }
     });
     for (double& r : spheres.r) r += skin_;
@@ -101,9 +106,9 @@ class Relaxation {
 
   bool put_in_bed() {
     Spheres<3> spheres = crowd_.spheres();
-    for (std::uint32_t i = 0; i < spheres.size(); ++i) spheres.r[i] = work_.supply->radius(i);
-    if (snug_) SnugPlaces(work_).move_to_touch(spheres);
-    return work_.put_in_bed(spheres);
+    for (std::uint32_t i = 0; i < spheres.size(); ++i) spheres.r[i] = in_bed_.supply->radius(i);
+    if (snug_) SnugPlaces(in_bed_, report_).move_to_touch(spheres);
+    return in_bed_.put_in_bed(spheres);
   }
 
   /// Settles and stirs. Returns whether the spheres came free of overlap.
@@ -115,10 +120,10 @@ class Relaxation {
     const StageEnd end = crowd_.relax({.patience = patience,
                                        .hopeless_patience = hopeless_patience,
                                        .failures_a_burst = std::numeric_limits<int>::max(),
-                                       .milestone = [this] { report(); },
+                                       .milestone = [this] { tell(); },
                                        .is_over = is_over,
-                                       .checkpoints = work_.checkpoints},
-                                      work_.monitor, random_);
+                                       .checkpoints = report_.checkpoints},
+                                      report_.monitor, random_);
     cancelled_ = end == StageEnd::cancelled;
     over_ = over_ || cancelled_ || end == StageEnd::hit_limit;
     return end == StageEnd::converged;
@@ -132,7 +137,7 @@ class Relaxation {
 
   /// The next of the sequence, in holes. Returns false, with nothing changed, if there are not so many.
   bool add(std::size_t count) {
-    const auto next = std::span(work_.supply->radii()).subspan(crowd_.size(), count);
+    const auto next = std::span(in_bed_.supply->radii()).subspan(crowd_.size(), count);
     std::vector<double> radii(next.begin(), next.end());
     for (double& r : radii) r += skin_;
     return crowd_.add(radii, random_);
@@ -143,7 +148,7 @@ class Relaxation {
     double share = pushed_in;
     std::size_t more = 0;
     Spheres<3> before;
-    const Resumable part(work_, "push in", [&](Archive& a) { a(share, more, before); });
+    const Resumable part(report_, "push in", [&](Archive& a) { a(share, more, before); });
     for (bool goes_on = part.resumed(); share >= least_pushed_in && !over_;) {
       if (!std::exchange(goes_on, false)) {
         before = crowd_.spheres();
@@ -173,11 +178,11 @@ class Relaxation {
   /// Spheres that are free of overlap exchange their sizes, and more of the sequence come in as that makes
   /// room. Where that comes to no good end, all is as it was.
   void exchange() {
-    const EffectTimer timer(work_.effects["exchange"]);
+    const EffectTimer timer(report_.effects["exchange"]);
     Spheres<3> ordinary = crowd_.spheres();
     double sweeps_before = crowd_.sweeps();
     bool crowding = true;
-    const Resumable part(work_, "exchange", [&](Archive& a) { a(ordinary, sweeps_before, crowding); });
+    const Resumable part(report_, "exchange", [&](Archive& a) { a(ordinary, sweeps_before, crowding); });
     if (crowding) crowd_by_exchange();
     crowding = false;
     bool free = settle_by_exchange();
@@ -188,31 +193,29 @@ class Relaxation {
     }
     sweeps_of_exchange_ += crowd_.sweeps() - sweeps_before;
     if (free && crowd_.size() > ordinary.size()) {
-      work_.account = fmt::format("an exchange of sizes has made room for {:.1f} % more",
-                                  100 * (volume_of(crowd_.spheres()) / volume_of(ordinary) - 1));
+      report_.account = fmt::format("an exchange of sizes has made room for {:.1f} % more",
+                                    100 * (volume_of(crowd_.spheres()) / volume_of(ordinary) - 1));
       return;
     }
-    work_.account = cancelled_ ? "the exchange of sizes was not finished, and left no trace"
-                               : "an exchange of sizes has made no room";
+    report_.account = cancelled_ ? "the exchange of sizes was not finished, and left no trace"
+                                 : "an exchange of sizes has made no room";
     crowd_.restore(ordinary);
   }
 
   /// Up to a little more than there is room for, unless all are there before.
   void crowd_by_exchange() {
     int k = 0;
-    const Resumable part(work_, "crowding", [&](Archive& a) { a(k, crowd_); });
-    SizeExchange sizes(crowd_.spheres().r, work_.dimension());
+    const Resumable part(report_, "crowding", [&](Archive& a) { a(k, crowd_); });
+    SizeExchange sizes(crowd_.spheres().r, in_bed_.bed().dimension());
     for (; k < exchanges && !(crowd_.is_free() && crowd_.size() == target_count_); ++k) {
       if (exchange_is_over()) return;
       const double done = static_cast<double>(k) / exchanges;
       const double energy = crowd_.exchange(sizes, exchange_step(done));
       if (energy < crowding && crowd_.size() < target_count_) {
         if (!add(count_of_more(compression - 1))) return;
-        sizes = SizeExchange(crowd_.spheres().r, work_.dimension());
+        sizes = SizeExchange(crowd_.spheres().r, in_bed_.bed().dimension());
       }
-      if (k % exchanges_a_milestone == 0)
-        work_.crowd_milestone("exchange", crowd_.size(), volume_of(crowd_.spheres()),
-                              crowd_.largest_overlap(), done);
+      if (k % exchanges_a_milestone == 0) tell("exchange", done);
     }
   }
 
@@ -220,40 +223,43 @@ class Relaxation {
   /// done.
   bool settle_by_exchange() {
     int k = 0;
-    const Resumable part(work_, "settling", [&](Archive& a) { a(k, crowd_); });
-    SizeExchange sizes(crowd_.spheres().r, work_.dimension());
+    const Resumable part(report_, "settling", [&](Archive& a) { a(k, crowd_); });
+    SizeExchange sizes(crowd_.spheres().r, in_bed_.bed().dimension());
     for (; k < exchanges_to_settle && !crowd_.is_free(); ++k) {
       if (exchange_is_over()) return false;
       crowd_.exchange(sizes, exchange_step(1));
     }
-    const StageEnd end = crowd_.settle(work_.monitor, [this] { report(); });
+    const StageEnd end = crowd_.settle(report_.monitor, [this] { tell(); });
     cancelled_ = end == StageEnd::cancelled;
     over_ = over_ || cancelled_;
     return end == StageEnd::converged;
   }
 
   bool exchange_is_over() {
-    cancelled_ = work_.stop();
+    cancelled_ = report_.stop();
     over_ = over_ || cancelled_ || (options_.seconds > 0 && seconds() > options_.seconds);
     return over_;
   }
 
   /// Those that the walls leave less room than the margin, which never come free of overlap.
   void place_snugly() {
-    const double wanted = volume_of(work_.drawn(target_count_).spheres) / work_.container->volume();
-    SnugPlaces(work_).complete(wanted);
+    const double wanted = volume_of(in_bed_.drawn(target_count_).spheres) / in_bed_.task.container->volume();
+    SnugPlaces(in_bed_, report_).complete(wanted);
   }
 
-  void report() {
-    work_.crowd_milestone("relax", crowd_.size(), volume_of(crowd_.spheres()), crowd_.largest_overlap(),
-                          crowd_.done());
+  void tell() { tell("relax", crowd_.done()); }
+  void tell(std::string_view stage, double done) {
+    report_.milestone(stage, crowd_.size(), volume_of(crowd_.spheres()) / in_bed_.task.container->volume(),
+                      crowd_.largest_overlap(), done);
   }
 
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
-  Work& work_;
+  SpheresInBed& in_bed_;
+
+  Reporter& report_;
   const Relax options_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Random random_;
@@ -269,39 +275,40 @@ class Relaxation {
 };
 
 /// Whether what is asked for is so little that spheres need not push each other.
-bool is_dilute(const Work& work) {
-  return !work.target.is_open() && volume_of(work.drawn(work.supply->wanted()).spheres) <=
-                                       dilute * work.attainable * work.container->volume();
+bool is_dilute(const SpheresInBed& in_bed) {
+  const Task& task = in_bed.task;
+  return !task.target.is_open() && volume_of(in_bed.drawn(in_bed.supply->wanted()).spheres) <=
+                                       dilute * task.attainable * task.container->volume();
 }
 
 }  // namespace
 
-StageEnd relax_in_container(Work& work, const Relax& options) {
+StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report) {
   enum class Step { begin, insert, relax, finish } step = Step::begin;
   StageEnd end = StageEnd::converged;
-  const Resumable part(work, "relax in container", [&](Archive& a) { a(step, end); });
+  const Resumable part(report, "relax in container", [&](Archive& a) { a(step, end); });
   const auto relaxed = [&] {
     if (step == Step::begin) {
       // What fits only touching the walls would be pushed off its place; the others come around it.
-      if (SnugPlaces(work).only_some_touch()) return insert_largest_first(work);
-      const bool all_stand = work.begun > 0 && !work.target.is_open() && work.supply->exhausted();
+      if (SnugPlaces(in_bed, report).only_some_touch()) return insert_largest_first(in_bed, report);
+      const bool all_stand = in_bed.begun > 0 && !in_bed.task.target.is_open() && in_bed.supply->exhausted();
       if (all_stand) return StageEnd::converged;
-      step = is_dilute(work) && work.crowded_start.empty() ? Step::insert : Step::relax;
+      step = is_dilute(in_bed) && in_bed.crowded_start.empty() ? Step::insert : Step::relax;
     }
     if (step == Step::insert) {
-      const StageEnd inserted = insert(work, until_full);
+      const StageEnd inserted = insert(until_full, in_bed, report);
       if (inserted != StageEnd::full) return inserted;
       step = Step::relax;
     }
     const auto relax = [&] {
-      const EffectTimer timer(work.effects["relaxation"]);
-      return Relaxation(work, options).run();
+      const EffectTimer timer(report.effects["relaxation"]);
+      return Relaxation(in_bed, report, options).run();
     };
-    return insert_what_else_fits(work, relax());
+    return insert_what_else_fits(in_bed, report, relax());
   };
   if (step != Step::finish) end = relaxed();
   step = Step::finish;
-  return finish_in_bed(end, options.polish, work);
+  return finish_in_bed(end, options.polish, in_bed, report);
 }
 
 }  // namespace bernal

@@ -8,23 +8,24 @@
 namespace bernal {
 
 template <int D>
-StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options) {
-  PublishedLoop<D> loop(spheres, edges, options.settle, work.random(Stream::relax));
+StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
+                           const Relax& options) {
+  PublishedLoop<D> loop(spheres, edges, options.settle, report.random(Stream::relax));
   const int sweeps = sweeps_a_cycle(options, spheres.size());
   double reported = 0, molr = 0;
   int sweep = 0;
   std::uint64_t all_sweeps = 0;
-  const Resumable part(work, "published loop",
-                       [&](Archive& a) { a(reported, molr, sweep, all_sweeps, work.edges, loop); });
+  const Resumable part(report, "published loop",
+                       [&](Archive& a) { a(reported, molr, sweep, all_sweeps, in_box.edges, loop); });
   const auto end = [&](StageEnd how) {
     loop.write_to(spheres);
     edges = loop.edges();
-    work.effects["relaxation"].calls += all_sweeps;
+    report.effects["relaxation"].calls += all_sweeps;
     return how;
   };
   for (;;) {
     for (; sweep < sweeps; ++sweep) {
-      if (work.stop()) return end(StageEnd::cancelled);
+      if (report.stop()) return end(StageEnd::cancelled);
       molr = loop.sweep();
       ++all_sweeps;
     }
@@ -34,13 +35,13 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, Work& work, co
     const double done = std::log(molr) / std::log(options.stop);
     if (done < reported) continue;
     reported = done + 0.005;
-    work.edges = loop.edges();
-    work.milestone("relax", std::clamp(done, 0.0, 0.99), molr);
+    in_box.edges = loop.edges();
+    report.milestone("relax", in_box, molr, done);
   }
 }
 
 #define BERNAL_INSTANTIATE(D) \
-  template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, Work&, const Relax&);
+  template StageEnd relax_by_the_book<D>(Spheres<D>&, Vector<D>&, SpheresInBox&, Reporter&, const Relax&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

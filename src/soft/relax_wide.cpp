@@ -115,7 +115,8 @@ std::size_t starts_of(std::size_t few) {
 /// Reports to a run how far the kinds are, in the usual number of cycles.
 class KindsTeller {
  public:
-  KindsTeller(Work& work, const std::vector<std::size_t>& ends) : work_(work) {
+  KindsTeller(const SpheresInBox& in_box, const Reporter& report, const std::vector<std::size_t>& ends)
+      : in_box_(in_box), report_(report) {
     if (ends.front() < spheres_in_starts)
       of_starts_ = usual_cycles_of_few * static_cast<double>(starts_of(ends.front()) * ends.front());
     all_ = before_ = of_starts_;
@@ -134,10 +135,11 @@ class KindsTeller {
 
  private:
   void tell(double cycles, double largest) {
-    work_.milestone("relax", share_of_placing * cycles / all_, largest);
+    report_.milestone("relax", in_box_, largest, share_of_placing * cycles / all_);
   }
 
-  Work& work_;
+  const SpheresInBox& in_box_;
+  const Reporter& report_;
   // In cycles times spheres that are swept.
   double of_starts_ = 0, all_ = 0;
   double before_ = 0;  // before the present kind
@@ -145,17 +147,17 @@ class KindsTeller {
 
 /// Sweeps in a box of fixed size until that no longer helps.
 template <int D>
-StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options,
+StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Reporter& report, const Relax& options,
                      KindsTeller& teller) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
   const int sweeps = sweeps_of_wide(options, spheres.size());
   StageEnd end = StageEnd::converged;
   double largest = 1, mean = std::numeric_limits<double>::infinity();
   int cycle = 0, done = 0;
-  const Resumable part(work, "kind", [&](Archive& a) { a(largest, mean, cycle, done, packing); });
+  const Resumable part(report, "kind", [&](Archive& a) { a(largest, mean, cycle, done, packing); });
   while (cycle < most_cycles_of_kind) {
     const std::optional<double> met =
-        sweep_cycle<D, true>(packing, sweeps, done, largest, [&] { return work.stop(); });
+        sweep_cycle<D, true>(packing, sweeps, done, largest, [&] { return report.stop(); });
     if (!met) end = StageEnd::cancelled;
     if (!met) break;
     ++cycle;
@@ -165,8 +167,8 @@ StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Work& work, co
     teller.cycled(cycle, spheres.size(), largest);
     if (mean > helps * before || largest < settled) break;
   }
-  work.effects["neighbour lists"] += packing.lists_built();
-  work.effects["relaxation"].calls += static_cast<std::uint64_t>(cycle * sweeps + done);
+  report.effects["neighbour lists"] += packing.lists_built();
+  report.effects["relaxation"].calls += static_cast<std::uint64_t>(cycle * sweeps + done);
   packing.write_to(spheres);
   return end;
 }
@@ -189,7 +191,7 @@ auto overlap_by_means(const std::vector<double>& radii) {
 
 /// Packs few spheres several times, and scales the densest packing to the box.
 template <int D>
-StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options,
+StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Reporter& report, const Relax& options,
                    Random& random, KindsTeller& teller) {
   double factor = std::pow(volume_of(spheres) / (start_of_few * edges.prod()), 1.0 / D);
   factor = std::max(factor, 2.0001 * std::ranges::max(spheres.r) / edges.minCoeff());
@@ -200,15 +202,15 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Work& work, cons
   StageEnd end = StageEnd::converged;
   for (std::size_t n = 0; n < starts && end == StageEnd::converged; ++n) {
     Vector<D> box = factor * edges;
-    place_between(start, 0, box, random, work.monitor);
+    place_between(start, 0, box, random, report.monitor);
     SoftPacking packing(start, box, soft_kernels().front(), true);
     BoxGrowth growth;
     end = grow_apart<D>(
-        packing, growing, growth, [&] { return work.monitor.stop(); }, overlap_by_means<D>(start.r),
+        packing, growing, growth, [&] { return report.monitor.stop(); }, overlap_by_means<D>(start.r),
         [](double, double) {});
     teller.started(n + 1, starts, growth.molr);
-    work.effects["neighbour lists"] += packing.lists_built();
-    work.effects["relaxation"].calls += sweeps_of(growth, growing, end);
+    report.effects["neighbour lists"] += packing.lists_built();
+    report.effects["relaxation"].calls += sweeps_of(growth, growing, end);
     packing.write_to(start, box);
     if (!(box.prod() < least)) continue;
     least = box.prod();
@@ -226,8 +228,9 @@ bool is_for_wide_sizes(const FillTask& task, const Relax& options) {
 }
 
 template <int D>
-StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options) {
-  Random random = work.random(Stream::relax);
+StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, const SpheresInBox& in_box,
+                            Reporter& report, const Relax& options) {
+  Random random = report.random(Stream::relax);
   const std::size_t count = spheres.size();
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -236,10 +239,10 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
   for (const std::size_t i : order) descending.push_back(Vector<D>::Zero(), spheres.r[i]);
 
   const std::vector<std::size_t> ends = ends_of_kinds(descending.r);
-  KindsTeller teller(work, ends);
+  KindsTeller teller(in_box, report, ends);
   StageEnd end = StageEnd::converged;
   std::size_t first = 0, kind = 0;
-  const Resumable part(work, "from the largest", [&](Archive& a) { a(first, kind, descending, random); });
+  const Resumable part(report, "from the largest", [&](Archive& a) { a(first, kind, descending, random); });
   for (std::size_t k = 0; k < kind; ++k) teller.settled(ends[k]);
   for (bool goes_on = part.resumed(); kind < ends.size(); first = ends[kind++]) {
     Spheres<D> there = descending;
@@ -248,10 +251,10 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
     if (std::exchange(goes_on, false))
       ;  // they have their places
     else if (are_few)
-      end = place_few(there, edges, work, options, random, teller);
+      end = place_few(there, edges, report, options, random, teller);
     else
-      place_between(there, first, edges, random, work.monitor);
-    if (end == StageEnd::converged) end = settle_kind<D>(there, edges, work, options, teller);
+      place_between(there, first, edges, random, report.monitor);
+    if (end == StageEnd::converged) end = settle_kind<D>(there, edges, report, options, teller);
     teller.settled(there.size());
     for (std::size_t i = 0; i < there.size(); ++i) descending.set_center(i, there.center(i));
   }
@@ -260,17 +263,19 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
 }
 
 template <int D>
-StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap,
-                    double before) {
+StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
+                    const Relax& options, double overlap, double before) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
-  const GrowingBox box = box_of_wide(options, spheres.size(), least_overlap(options, work.allowed_overlap));
-  return let_box_grow<D>(packing, spheres, edges, work, box, {.molr = overlap}, before,
+  const GrowingBox box = box_of_wide(options, spheres.size(), least_overlap(options, in_box.task.allowed_overlap));
+  return let_box_grow<D>(packing, spheres, edges, in_box, report, box, {.molr = overlap}, before,
                          overlap_by_means<D>(spheres.r));
 }
 
-#define BERNAL_INSTANTIATE(D)                                                               \
-  template StageEnd place_from_largest(Spheres<D>&, const Vector<D>&, Work&, const Relax&); \
-  template StageEnd relax_wide(Spheres<D>&, Vector<D>&, Work&, const Relax&, double, double);
+#define BERNAL_INSTANTIATE(D)                                                                           \
+  template StageEnd place_from_largest(Spheres<D>&, const Vector<D>&, const SpheresInBox&, Reporter&,   \
+                                       const Relax&);                                                   \
+  template StageEnd relax_wide(Spheres<D>&, Vector<D>&, SpheresInBox&, Reporter&, const Relax&, double, \
+                               double);
 BERNAL_INSTANTIATE(2)
 BERNAL_INSTANTIATE(3)
 #undef BERNAL_INSTANTIATE

@@ -1,7 +1,8 @@
 #pragma once
 #include "bernal/core/spheres.hpp"
 #include "bernal/soft/relax.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_box.hpp"
 
 namespace bernal {
 
@@ -33,7 +34,8 @@ inline double wide_start(const FillTask& task) { return 1.06 * task.attainable; 
 ///
 /// Precondition: every edge is at least the largest diameter. Cost: some hundred sweeps for each octave.
 template <int D>
-StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& work, const Relax& options);
+StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, const SpheresInBox& in_box,
+                            Reporter& report, const Relax& options);
 
 /// Relaxation in a growing box for wide sizes. The box grows by the mean overlap divided by beta, and not by
 /// the largest: the mean by number or by volume, whichever is larger. One small sphere between two large ones
@@ -45,7 +47,7 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, Work& w
 /// is over then. Preconditions and results are those of `relax_by_the_book`. Cost: about 20 ns a sphere and
 /// sweep, lists included.
 template <int D>
-StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, Work& work, const Relax& options, double overlap,
-                    double before);
+StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
+                    const Relax& options, double overlap, double before);
 
 }  // namespace bernal

@@ -71,56 +71,58 @@ double as_dense_as_aimed(const BedTarget& target, const EmptyBed& bed) {
 /// Says that the bed is not as high as was asked where it differs by more than that, in largest diameters.
 constexpr double as_high = 1.05;
 
-void tell_height(Work& work, double ground, const BedTop& top) {
-  const double asked = work.target.bed.above_ground;
-  if (!(asked > 0) || work.bed().size() == 0) return;
+void tell_height(const SpheresInBed& in_bed, Reporter& report, double ground, const BedTop& top) {
+  const double asked = in_bed.task.target.bed.above_ground;
+  if (!(asked > 0) || in_bed.bed().size() == 0) return;
   double highest = 0;
-  for (Bed::Id i = 0; i < work.bed().size(); ++i)
-    highest = std::max(highest, top.up().dot(work.bed()[i].center) + work.bed()[i].r - ground);
-  if (highest < asked - as_high * 2 * work.supply->largest())
-    work.missed = fmt::format("the bed is only {:.3g} of the height that was asked for", highest / asked);
+  for (Bed::Id i = 0; i < in_bed.bed().size(); ++i)
+    highest = std::max(highest, top.up().dot(in_bed.bed()[i].center) + in_bed.bed()[i].r - ground);
+  if (highest < asked - as_high * 2 * in_bed.supply->largest())
+    report.missed = fmt::format("the bed is only {:.3g} of the height that was asked for", highest / asked);
   else if (highest > asked * (1 + 1e-3))
-    work.missed =
+    report.missed =
         fmt::format("what was there before is {:.3g} times as high as the bed was to be", highest / asked);
 }
 
 /// Packing fraction of a poured bed, by what is expected of the whole container.
-double poured_of(const Work& work, const Heights& heights) {
-  const double height = work.target.bed.above_ground, whole = work.container->volume();
-  return height > 0 ? work.attainable * whole / heights.volume_below(heights.ground() + height)
-                    : work.attainable;
+double poured_of(const SpheresInBed& in_bed, const Heights& heights) {
+  const double height = in_bed.task.target.bed.above_ground, whole = in_bed.task.container->volume();
+  return height > 0 ? in_bed.task.attainable * whole / heights.volume_below(heights.ground() + height)
+                    : in_bed.task.attainable;
 }
 
 /// Onto a start, which rests, the others are poured; what other stages have placed is placed anew. Then each
 /// falls and rolls to rest. Cost: that of relaxation, and of `roll_to_rest`.
-StageEnd settle(Work& work, const Settle& options) {
+StageEnd settle(const Settle& options, SpheresInBed& in_bed, Reporter& report) {
+  const Task& task = in_bed.task;
   const Vector<3> down = direction_of(options.direction);
-  require_support(work.bed().container().boundary(), down);
-  const NotResumable whole_or_not_at_all(work);
-  const BedTop top(work.target.bed, *work.container, down);
-  const Heights heights(*work.container, top, VolumeBelow(work.domain, down).lowest());
-  const std::size_t held = work.begun;
+  require_support(in_bed.bed().container().boundary(), down);
+  const NotResumable whole_or_not_at_all(report);
+  const BedTop top(task.target.bed, *task.container, down);
+  const Heights heights(*task.container, top, VolumeBelow(task.domain, down).lowest());
+  const std::size_t held = in_bed.begun;
   if (held == 0)
-    work.put_in_bed({});
-  else if (rest_first(work, down, options.rest) == StageEnd::cancelled)
+    in_bed.put_in_bed({});
+  else if (rest_first(in_bed.bed(), report, down, options.rest) == StageEnd::cancelled)
     return StageEnd::cancelled;
   const std::shared_ptr<const Container> room =
-      held == 0 ? work.container : above_spheres(work.container, work.bed().spheres(), top.up());
+      held == 0 ? task.container : above_spheres(task.container, in_bed.bed().spheres(), top.up());
   const Heights of_room = held == 0 ? heights : Heights(*room, top, heights.ground());
   const auto lay = [&](Laying& how) {
-    const StageEnd end = pour(work, top, room, of_room, how);
+    const StageEnd end = pour(in_bed, report, top, room, of_room, how);
     if (end == StageEnd::cancelled) return end;
-    const EffectTimer timer(work.effects["rolling"]);
+    const EffectTimer timer(report.effects["rolling"]);
     const Made made("rolling");
-    const StageEnd rest =
-        roll_to_rest(work, down, {.still = options.rest, .friction = how.friction, .held = held});
+    const StageEnd rest = roll_to_rest(in_bed.bed(), report, down,
+                                       {.still = options.rest, .friction = how.friction, .held = held});
     return rest == StageEnd::converged ? end : rest;
   };
-  const StageEnd end = settle_as_dense(work, options.bed, heights, top, poured_of(work, heights), lay);
+  const StageEnd end =
+      settle_as_dense(in_bed, report, options.bed, heights, top, poured_of(in_bed, heights), lay);
   if (end == StageEnd::cancelled) return end;
-  tell_height(work, heights.ground(), top);
-  const bool to_the_brim = !work.target.is_open() && !work.supply->exhausted();
-  if (to_the_brim && !work.account.empty()) work.account += "; it reaches the brim";
+  tell_height(in_bed, report, heights.ground(), top);
+  const bool to_the_brim = !task.target.is_open() && !in_bed.supply->exhausted();
+  if (to_the_brim && !report.account.empty()) report.account += "; it reaches the brim";
   return end;
 }
 
@@ -147,7 +149,7 @@ const StageEntry& entry_of<Settle>() {
                                      above(0, 1)))},
            .complete = completion(take_bed_target)},
           {.in_bed = true, .keeps_sizes = true, .places_expected = true, .makes_bed = true}),
-      .act_in_bed = act(settle),
+      .act_in_bed = of_options(settle),
       .may_bring = {"insertion", "neighbour lists", "relaxation", "tapping", "rolling"},
       .effects = of_options(effects_of_settling),
       .require = of_options(+[](const Settle& o, const Domain& domain, double, const FillTask&) {

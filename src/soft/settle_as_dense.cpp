@@ -29,31 +29,31 @@ constexpr double above_aim = 0.02;
 constexpr double exact_angle = 0.25;  // degrees
 /// Where no law holds, vibration is tried at so much more than settling leaves: what relaxation reaches.
 constexpr double denser_below_laws = 1.04;
-/// What `Work::close_packing` is of equal spheres.
+/// What `Task::close_packing` is of equal spheres.
 constexpr double close_packing_of_equal = 0.6435;
 
 /// In mean diameters: of a lower bed next to nothing is far from floor and top.
 constexpr double least_height = 4;
 
 /// In mean diameters, of a bed with a level top.
-double height_of(const Work& work, const Heights& heights, std::size_t count, double porosity) {
-  const double level = heights.holding(work.volume_of_drawn(count) / (1 - porosity));
-  return (level - heights.ground()) / mean_diameter(work, count);
+double height_of(const SpheresInBed& in_bed, const Heights& heights, std::size_t count, double porosity) {
+  const double level = heights.holding(in_bed.volume_of_drawn(count) / (1 - porosity));
+  return (level - heights.ground()) / mean_diameter(in_bed, count);
 }
 
 /// The bed before a stage, from which each attempt begins.
 class BedBefore {
  public:
-  explicit BedBefore(Work& work)
-      : work_(work), bed_(*work.bed_), start_(work.crowded_start), placed_(work.drawn(0).placed) {}
+  explicit BedBefore(SpheresInBed& in_bed)
+      : in_bed_(in_bed), bed_(in_bed.bed()), start_(in_bed.crowded_start), placed_(in_bed.drawn(0).placed) {}
   void put_back() const {
-    work_.bed_ = std::make_shared<Bed>(bed_);
-    work_.crowded_start = start_;
-    work_.supply->set_placed(placed_);
+    in_bed_.replace_bed(std::make_unique<Bed>(bed_));
+    in_bed_.crowded_start = start_;
+    in_bed_.supply->set_placed(placed_);
   }
 
  private:
-  Work& work_;
+  SpheresInBed& in_bed_;
   const Bed bed_;
   const Spheres<3> start_;
   const std::vector<bool> placed_;
@@ -61,9 +61,15 @@ class BedBefore {
 
 class Attempts {
  public:
-  Attempts(Work& work, const DensityAim& aim, const Heights& heights, const BedTop& top,
-           const std::function<StageEnd(Laying&)>& lay)
-      : work_(work), aim_(aim), heights_(heights), top_(top), lay_(lay), before_(work) {}
+  Attempts(SpheresInBed& in_bed, Reporter& report, const DensityAim& aim, const Heights& heights,
+           const BedTop& top, const std::function<StageEnd(Laying&)>& lay)
+      : in_bed_(in_bed),
+        report_(report),
+        aim_(aim),
+        heights_(heights),
+        top_(top),
+        lay_(lay),
+        before_(in_bed) {}
 
   /// `height`: about that of the bed, in mean diameters.
   StageEnd run(bool vibrated, double height) {
@@ -109,19 +115,19 @@ class Attempts {
   double attempt(Laying& laying) {
     if (tried_) before_.put_back();
     tried_ = true;
-    if (!tapped_.empty()) work_.crowded_start = tapped_;
+    if (!tapped_.empty()) in_bed_.crowded_start = tapped_;
     laying.is_aimed = true;
     end_ = lay_(laying);
-    if (laying.taps > 0) tapped_ = work_.crowded_start;
+    if (laying.taps > 0) tapped_ = in_bed_.crowded_start;
     if (end_ == StageEnd::cancelled && best_) return least_error_;
-    const auto reached = porosity_of(work_, heights_, top_);
+    const auto reached = porosity_of(in_bed_.bed(), heights_, top_);
     const double error =  // of a few spheres on a floor there is none
         reached ? (aim_.of_core ? reached->core : reached->whole) - aim_.porosity : 0;
     if (!best_ || std::abs(error) < least_error_) {
       least_error_ = std::abs(error);
-      best_.emplace(work_);
+      best_.emplace(in_bed_);
       end_of_best_ = end_;
-      work_.missed = why_missed(error, laying);
+      report_.missed = why_missed(error, laying);
     }
     return error;
   }
@@ -129,7 +135,7 @@ class Attempts {
   std::string why_missed(double error, const Laying& laying) const {
     // What fills its container cannot rise to be looser.
     if (std::abs(error) <= missed_by ||
-        (error < 0 && work_.target.is_open() && !work_.target.bed.gives_height()))
+        (error < 0 && in_bed_.task.target.is_open() && !in_bed_.task.target.bed.gives_height()))
       return "";
     return fmt::format("a porosity of {:.3f}{} is the aim, and {:.3f} is reached: {}", aim_.porosity,
                        aim_.of_core ? " far from floor and top" : "", aim_.porosity + error,
@@ -155,7 +161,9 @@ class Attempts {
     }
   }
 
-  Work& work_;
+  SpheresInBed& in_bed_;
+
+  Reporter& report_;
   const DensityAim& aim_;
   const Heights& heights_;
   const BedTop& top_;
@@ -169,50 +177,54 @@ class Attempts {
 };
 
 /// Of the part of the container that it will fill, at most.
-Across across_of_bed(const Work& work, const Heights& heights, const BedTop& top, std::size_t count) {
-  const double volume = work.volume_of_drawn(count) / (1 - porosity_loose(least_across));
-  if (volume >= work.container->volume())
-    return across_of(*work.container, -top.up(), mean_diameter(work, count));
-  return across_of(*cut_by_planes(work.container, top.planes(heights.holding(volume)), volume), -top.up(),
-                   mean_diameter(work, count));
+Across across_of_bed(const SpheresInBed& in_bed, const Heights& heights, const BedTop& top,
+                     std::size_t count) {
+  const std::shared_ptr<const Container>& whole = in_bed.task.container;
+  const double volume = in_bed.volume_of_drawn(count) / (1 - porosity_loose(least_across));
+  if (volume >= whole->volume()) return across_of(*whole, -top.up(), mean_diameter(in_bed, count));
+  return across_of(*cut_by_planes(whole, top.planes(heights.holding(volume)), volume), -top.up(),
+                   mean_diameter(in_bed, count));
 }
 
-void tell_density(Work& work, const BedTarget& target, const std::optional<DensityAim>& aim,
-                  const std::string& why_none, const Across& across, const Heights& heights,
-                  const BedTop& top) {
-  const auto porosity = porosity_of(work, heights, top);
-  if (!porosity) return;                                       // of a few spheres on a floor there is none
-  if (work.supply->drawn(0) < work.supply->radius(0)) return;  // nor of spheres with their coats
-  work.account = fmt::format("the bed has a porosity of {:.3f}", porosity->whole);
-  if (target.density) work.account += fmt::format(", far from floor and top {:.3f}", porosity->core);
+void tell_density(const SpheresInBed& in_bed, Reporter& report, const BedTarget& target,
+                  const std::optional<DensityAim>& aim, const std::string& why_none, const Across& across,
+                  const Heights& heights, const BedTop& top) {
+  const auto porosity = porosity_of(in_bed.bed(), heights, top);
+  if (!porosity) return;  // of a few spheres on a floor there is none
+  if (in_bed.supply->drawn(0) < in_bed.supply->radius(0)) return;  // nor of spheres with their coats
+  report.account = fmt::format("the bed has a porosity of {:.3f}", porosity->whole);
+  if (target.density) report.account += fmt::format(", far from floor and top {:.3f}", porosity->core);
   if (target.density == BedTarget::Density::poured && across.is_column && across.diameters > 1.5 &&
       across.diameters < 50)  // of which the law is
-    work.account +=
+    report.account +=
         fmt::format(" (of poured beds {:.3f} by Benyahia and O'Neill's law, {:.3g} diameters across)",
                     porosity_poured(across.diameters), across.diameters);
-  if (!why_none.empty()) work.account += "; " + why_none;
+  if (!why_none.empty()) report.account += "; " + why_none;
   if (aim && aim->of_core)
-    work.account += fmt::format("; the aim there is {:.3f}, give or take {:g} ({})", aim->porosity,
-                                scatter_of_beds, aim->words);
+    report.account += fmt::format("; the aim there is {:.3f}, give or take {:g} ({})", aim->porosity,
+                                  scatter_of_beds, aim->words);
 }
 
 }  // namespace
 
-StageEnd settle_as_dense(Work& work, const BedTarget& target, const Heights& heights, const BedTop& top,
-                         double poured, const std::function<StageEnd(Laying&)>& lay) {
-  const std::size_t count = work.target_count();
-  const bool equal = work.supply->smallest() == work.supply->largest();
-  const Across across = target.density ? across_of_bed(work, heights, top, count) : Across{};
-  auto [aim, why_none] = aim_of(target, across, equal ? 1 : work.close_packing / close_packing_of_equal);
-  const double height = aim ? height_of(work, heights, count, aim->porosity) : 0;
+StageEnd settle_as_dense(SpheresInBed& in_bed, Reporter& report, const BedTarget& target,
+                         const Heights& heights, const BedTop& top, double poured,
+                         const std::function<StageEnd(Laying&)>& lay) {
+  const std::size_t count = in_bed.target_count();
+  const bool equal = in_bed.supply->smallest() == in_bed.supply->largest();
+  const Across across = target.density ? across_of_bed(in_bed, heights, top, count) : Across{};
+  auto [aim, why_none] =
+      aim_of(target, across, equal ? 1 : in_bed.task.close_packing / close_packing_of_equal);
+  const double height = aim ? height_of(in_bed, heights, count, aim->porosity) : 0;
   if (aim && aim->of_core && height < least_height) {
     aim.reset();
     why_none = fmt::format("it is lower than {:g} diameters, and no law is of such beds", least_height);
   }
   const bool vibrated = target.density == BedTarget::Density::vibrated;
   Laying once{vibrated ? denser_below_laws * poured : poured, vibrated ? usual_taps : 0};
-  const StageEnd end = aim ? Attempts(work, *aim, heights, top, lay).run(vibrated, height) : lay(once);
-  if (end != StageEnd::cancelled) tell_density(work, target, aim, why_none, across, heights, top);
+  const StageEnd end =
+      aim ? Attempts(in_bed, report, *aim, heights, top, lay).run(vibrated, height) : lay(once);
+  if (end != StageEnd::cancelled) tell_density(in_bed, report, target, aim, why_none, across, heights, top);
   return end;
 }
 

@@ -4,7 +4,8 @@
 #include "bernal/scene/bed_target.hpp"
 #include "soft/below_level.hpp"
 #include "soft/tap.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_bed.hpp"
 
 namespace bernal {
 
@@ -21,12 +22,13 @@ struct Laying {
 /// Lays a bed with `lay`, and lays it again, from what stood there before, until it is as porous as the
 /// target asks for. The attempts begin at another packing fraction. If relaxation packs the spheres no
 /// denser, they are tapped; if they settle too densely however loose they begin, friction with the least
-/// sufficient angle holds them. The nearest attempt is kept. `Work::account` then says the porosity and the
-/// aim, and `Work::missed` that the aim was missed by more than 0.005. No law gives an aim for a bed lower
+/// sufficient angle holds them. The nearest attempt is kept. `Reporter::account` then says the porosity and the
+/// aim, and `Reporter::missed` that the aim was missed by more than 0.005. No law gives an aim for a bed lower
 /// than four diameters.
 ///
 /// A poured bed is laid once, at `poured`. Cost: one to some ten attempts.
-StageEnd settle_as_dense(Work& work, const BedTarget& target, const Heights& heights, const BedTop& top,
-                         double poured, const std::function<StageEnd(Laying&)>& lay);
+StageEnd settle_as_dense(SpheresInBed& in_bed, Reporter& report, const BedTarget& target,
+                         const Heights& heights, const BedTop& top, double poured,
+                         const std::function<StageEnd(Laying&)>& lay);
 
 }  // namespace bernal

@@ -22,36 +22,38 @@ constexpr double most_to_tap = 1.1;
 constexpr int taps_a_look = 16;
 
 /// The first of the sequence where they stand, the others at random.
-Spheres<3> spheres_to_tap(const Work& work, Random& random) {
-  const std::size_t count = std::min(work.target_count(), work.count_filling(most_to_tap * work.attainable));
-  auto [spheres, placed] = work.drawn(std::max<std::size_t>(1, count));
-  const Spheres<3>& begun = work.crowded_start;
+Spheres<3> spheres_to_tap(const SpheresInBed& in_bed, Random& random, const Monitor& monitor) {
+  const Task& task = in_bed.task;
+  const std::size_t count =
+      std::min(in_bed.target_count(), in_bed.count_filling(most_to_tap * task.attainable));
+  auto [spheres, placed] = in_bed.drawn(std::max<std::size_t>(1, count));
+  const Spheres<3>& begun = in_bed.crowded_start;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     if (placed[i]) continue;
     const double r = spheres.r[i];
     const bool stands =
-        i < begun.size() && work.container->clearance_within(begun.center(i), r) >= least_clearance * r;
-    spheres.set_center(i, stands
-                              ? Vector<3>(begun.center(i))
-                              : clear_place(r, *work.container, work.bed().places(), random, work.monitor));
+        i < begun.size() && task.container->clearance_within(begun.center(i), r) >= least_clearance * r;
+    spheres.set_center(i, stands ? Vector<3>(begun.center(i))
+                                 : clear_place(r, *task.container, in_bed.bed().places(), random, monitor));
   }
   return spheres;
 }
 
 }  // namespace
 
-void tap(Work& work, int taps, double first) {
-  const EffectTimer timer(work.effects["tapping"]);
+void tap(SpheresInBed& in_bed, Reporter& report, int taps, double first) {
+  const EffectTimer timer(report.effects["tapping"]);
   const Made made("tapping");
-  Random random = work.random(Stream::shake);
-  Spheres<3> spheres = spheres_to_tap(work, random);
-  SoftPacking packing(spheres, *work.container, soft_kernels().front());
+  Random random = report.random(Stream::shake);
+  Spheres<3> spheres = spheres_to_tap(in_bed, random, report.monitor);
+  const Container& container = *in_bed.task.container;
+  SoftPacking packing(spheres, container, soft_kernels().front());
   packing.swell(tapped_swelling);
   packing.wear_lists(tapped_wear);
   const int quiet_taps = static_cast<int>(std::ceil(quiet_share * taps));
   std::vector<SoftPacking::Move> moves;
   for (int k = 0; k < taps + quiet_taps; ++k) {
-    if (k % taps_a_look == 0 && work.monitor.stop()) break;
+    if (k % taps_a_look == 0 && report.monitor.stop()) break;
     if (k < taps) {
       const double length = first * std::pow(last_tap / first, static_cast<double>(k) / taps);
       packing.write_to(spheres);
@@ -60,15 +62,15 @@ void tap(Work& work, int taps, double first) {
         const double r = spheres.r[i];
         Vector<3> to = spheres.center(i);
         for (int c = 0; c < 3; ++c) to[c] += random.uniform(-length * r, length * r);
-        if (work.container->clearance_within(to, r) >= least_clearance * r) moves.push_back({i, to});
+        if (container.clearance_within(to, r) >= least_clearance * r) moves.push_back({i, to});
       }
       packing.put(moves);
     }
     for (int s = 0; s < sweeps_a_tap; ++s) packing.sweep(tapped_omega);
   }
   packing.write_to(spheres);
-  work.effects["neighbour lists"] += packing.lists_built();
-  work.crowded_start = std::move(spheres);
+  report.effects["neighbour lists"] += packing.lists_built();
+  in_bed.crowded_start = std::move(spheres);
 }
 
 }  // namespace bernal

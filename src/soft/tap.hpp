@@ -1,18 +1,19 @@
 #pragma once
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_bed.hpp"
 
 namespace bernal {
 
 /// Packs spheres as densely as vibration does. Overlapping spheres push each other apart, and `taps` times
 /// all are displaced at random, each time by less. This annealing orders spheres along the walls. The spheres
-/// that the target asks for start where they are in the bed, else in `Work::crowded_start`, else at random.
-/// Their places at the end, with the overlap that is left, become `Work::crowded_start`, where relaxation
+/// that the target asks for start where they are in the bed, else in `SpheresInBed::crowded_start`, else at random.
+/// Their places at the end, with the overlap that is left, become `SpheresInBed::crowded_start`, where relaxation
 /// begins.
 ///
 /// The first tap displaces a sphere along each axis by at most `first` of its radius, the last by a tenth of
 /// `first_tap`. With `usual_taps` equal spheres in columns 10 and 20 diameters across reach porosities of
 /// 0.372 and 0.364 far from the ends, relaxation alone 0.39 and 0.38. Cost: `seconds_a_tap` a sphere and tap.
-void tap(Work&, int taps, double first);
+void tap(SpheresInBed&, Reporter&, int taps, double first);
 
 inline constexpr int usual_taps = 1000;
 /// For spheres at random places, and for spheres that were tapped before.

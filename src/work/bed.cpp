@@ -247,6 +247,12 @@ double Bed::enclose(double buffer) {
   return buffer;
 }
 
+std::vector<std::uint32_t> Bed::tags() const {
+  std::vector<std::uint32_t> ascending = tags_;
+  std::ranges::sort(ascending);
+  return ascending;
+}
+
 Spheres<3> Bed::spheres() const {
   std::vector<Id> order(balls_.size());
   std::iota(order.begin(), order.end(), Id{0});

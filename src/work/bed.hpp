@@ -64,6 +64,8 @@ class Bed {
   std::size_t size() const { return balls_.size(); }
   const Ball& operator[](Id i) const { return balls_[i]; }
   std::uint32_t tag(Id i) const { return tags_[i]; }
+  /// The tags of all spheres, ascending.
+  std::vector<std::uint32_t> tags() const;
   double skin() const { return skin_; }
   double mean_radius() const { return balls_.empty() ? 0 : sum_of_radii_ / static_cast<double>(size()); }
   double packing_fraction() const { return sum_of_volumes_ / container_.volume(); }

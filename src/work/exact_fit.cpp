@@ -106,27 +106,27 @@ bool fits_on_lattice(Spheres<D>& spheres, const Vector<D>& edges) {
 }
 
 template <int D>
-void fit_exactly_in(Work& work) {
-  const Vector<D> target = *work.target_edges;
-  Vector<D> edges = work.edges;
-  Spheres<D> spheres = work.spheres.in<D>();
+void fit_exactly_in(SpheresInBox& in_box) {
+  const Vector<D> target = *in_box.task.target_edges;
+  Vector<D> edges = in_box.edges;
+  Spheres<D> spheres = in_box.spheres.in<D>();
   const auto n = static_cast<double>(spheres.size());
   if (n * n * std::pow(3, D) > most_pairs) return;
   if (2 * std::ranges::max(spheres.r) > target.minCoeff()) return;  // by its own image
   resize_box<D>(spheres, edges, target);
   if (!fits_apart<D>(spheres, target) && !fits_on_lattice<D>(spheres, target)) return;
-  work.spheres = std::move(spheres);
-  work.edges = target;
+  in_box.spheres = std::move(spheres);
+  in_box.edges = target;
 }
 
 }  // namespace
 
-void fit_exactly(Work& work) {
-  if (!work.target_edges || work.edges == *work.target_edges || !work.walls.empty() || work.spheres.empty())
-    return;
-  if (!((work.edges.array() <= (1 + nearly) * work.target_edges->array()).all())) return;
-  with_dimension(work.dimension(), EveryDimension{},
-                 [&](auto dimension) { fit_exactly_in<decltype(dimension)::value>(work); });
+void fit_exactly(SpheresInBox& in_box) {
+  const std::optional<Vector<dynamic>>& target = in_box.task.target_edges;
+  if (!target || in_box.edges == *target || !in_box.task.walls.empty() || in_box.spheres.empty()) return;
+  if (!((in_box.edges.array() <= (1 + nearly) * target->array()).all())) return;
+  with_dimension(in_box.dimension(), EveryDimension{},
+                 [&](auto dimension) { fit_exactly_in<decltype(dimension)::value>(in_box); });
 }
 
 }  // namespace bernal

@@ -1,6 +1,6 @@
 #pragma once
 #include "bernal/core/spheres.hpp"
-#include "work/work.hpp"
+#include "work/spheres_in_box.hpp"
 
 namespace bernal {
 
@@ -9,6 +9,6 @@ namespace bernal {
 /// moved apart by roundings; then those of a simple cubic lattice. Whether they fit is decided in exact
 /// arithmetic, of all images. Nothing changes where they do not, where the box has walls, and of more than
 /// some hundred spheres. Cost: some milliseconds, where the box is nearly as asked for; else nothing.
-void fit_exactly(Work& work);
+void fit_exactly(SpheresInBox& in_box);
 
 }  // namespace bernal

@@ -156,12 +156,12 @@ Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edge
 }
 
 template <int D>
-void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, Work& work) {
-  Vector<D> free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap, work.walls);
+void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, const Task& task, Reporter& report) {
+  Vector<D> free = edges_free_of_overlap<D>(spheres, edges, task.allowed_overlap, task.walls);
   while (!free.allFinite()) {  // cancelled while centres coincide
-    Random random = work.random(Stream::relax);
-    displace_at_random<D>(spheres, edges, work.walls, 1e-3 * std::ranges::max(spheres.r), random);
-    free = edges_free_of_overlap<D>(spheres, edges, work.allowed_overlap, work.walls);
+    Random random = report.random(Stream::relax);
+    displace_at_random<D>(spheres, edges, task.walls, 1e-3 * std::ranges::max(spheres.r), random);
+    free = edges_free_of_overlap<D>(spheres, edges, task.allowed_overlap, task.walls);
   }
   resize_box<D>(spheres, edges, free);
 }
@@ -170,7 +170,7 @@ void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, Work& work) {
   template std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping(const Spheres<D>&,         \
                                                                             const Vector<D>&, double); \
   template bool is_free_of_overlap(const Spheres<D>&, const Vector<D>&, const std::vector<bool>&);     \
-  template void free_of_overlap(Spheres<D>&, Vector<D>&, Work&);                                       \
+  template void free_of_overlap(Spheres<D>&, Vector<D>&, const Task&, Reporter&);                      \
   template double contact_factor(const Spheres<D>&, const Vector<D>&);                                 \
   template Vector<D> edges_free_of_overlap(const Spheres<D>&, const Vector<D>&, double,                \
                                            const std::vector<bool>&);

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/task.hpp"
 
 namespace bernal {
 
@@ -56,7 +57,7 @@ Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edge
 /// Grows or shrinks the box until nothing overlaps more than is allowed, or crosses its walls. Centres that
 /// coincide are parted.
 template <int D>
-void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, Work& work);
+void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, const Task& task, Reporter& report);
 
 /// Whether nothing overlaps, nor crosses a wall, decided exactly of the numbers as they stand: touching is
 /// allowed. Of a box narrower than two of the largest spheres it may say no where it is so.

@@ -3,7 +3,8 @@
 #include <optional>
 
 #include "core/archive.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_bed.hpp"
 
 namespace bernal {
 
@@ -16,7 +17,7 @@ namespace bernal {
 /// scene's own coordinates; no stage moves it from there, as every way leads nearer to a wall.
 class SnugPlaces {
  public:
-  explicit SnugPlaces(Work& work);
+  SnugPlaces(SpheresInBed& in_bed, Reporter& report);
 
   /// Whether, of some hundred random places, none clears the wall for that radius.
   bool needed(double r);
@@ -48,7 +49,9 @@ class SnugPlaces {
   std::optional<Vector<3>> from(const Vector<3>& start, double r, bool touching) const;
   std::optional<Vector<3>> from(const Vector<3>& start, double r) const;
 
-  Work& work_;
+  SpheresInBed& in_bed_;
+
+  Reporter& report_;
   Random random_;
   Vector<3> along_;                                         // the container
   double roomy_ = 0;                                        // radii up to this have places by chance

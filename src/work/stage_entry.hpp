@@ -6,7 +6,10 @@
 
 #include "bernal/scene/packing.hpp"
 #include "scene/stage_table.hpp"
-#include "work/work.hpp"
+#include "work/reporter.hpp"
+#include "work/spheres_in_bed.hpp"
+#include "work/spheres_in_box.hpp"
+#include "work/task.hpp"
 
 namespace bernal {
 
@@ -40,7 +43,8 @@ struct EmptyBed {
 struct StageEntry {
   StageTable table;
   /// What it does on spheres that stand in a bed, and in a box; empty where it cannot.
-  std::function<StageEnd(const void*, Work&)> act_in_bed = {}, act_in_box = {};
+  std::function<StageEnd(const void*, SpheresInBed&, Reporter&)> act_in_bed = {};
+  std::function<StageEnd(const void*, SpheresInBox&, Reporter&)> act_in_box = {};
   /// Names of all effects that it may bring with it anywhere: those that a plan does not call for are absent.
   std::vector<std::string> may_bring = {};
   /// Those that it brings with it there, with what they are expected to cost. Throws Error{bad_argument}
@@ -94,12 +98,6 @@ template <class Result, class Options, class... Context>
 auto of_options(Result (*function)(const Options&, Context...)) {
   return [function](const void* options, Context... context) -> Result {
     return function(*static_cast<const Options*>(options), std::forward<Context>(context)...);
-  };
-}
-template <class Options>
-auto act(StageEnd (*function)(Work&, const Options&)) {
-  return [function](const void* options, Work& work) {
-    return function(work, *static_cast<const Options*>(options));
   };
 }
 

@@ -104,7 +104,7 @@ void Supply::multiply_by(double factor) {
   for (double& r : radii_) r *= factor;
   smallest_ *= factor;
   largest_ *= factor;
-  is_scaled_ = true;
+  scale_ *= factor;
 }
 
 void Supply::open_window() {

@@ -49,6 +49,8 @@ class Supply {
   void divide_by(double unit);
   /// All sizes are so many times as large from now on.
   void multiply_by(double factor);
+  /// By all of these together.
+  double scale() const { return scale_; }
   const std::vector<double>& radii() const { return radii_; }
   /// As it was drawn, without its coat: the packer's unit, and no later `multiply_by`.
   double drawn(std::size_t tag) const { return drawn_.empty() ? radii_[tag] : drawn_[tag]; }
@@ -87,8 +89,8 @@ class Supply {
 
   /// What has happened since the radii were drawn, which they are again before this is read.
   void archive(Archive& a) {
-    a(window_, taken_first_, in_sequence_, next_, is_scaled_);
-    if (is_scaled_) a(radii_, smallest_, largest_);
+    a(window_, taken_first_, in_sequence_, next_, scale_);
+    if (scale_ != 1) a(radii_, smallest_, largest_);
   }
 
  private:
@@ -106,7 +108,7 @@ class Supply {
   double cut_ = 0;
   double smallest_ = 0;
   double largest_ = 0;
-  bool is_scaled_ = false;  // by `multiply_by`
+  double scale_ = 1;
 };
 
 }  // namespace bernal

@@ -9,7 +9,7 @@
 namespace bernal {
 namespace {
 
-using Fill = StageEnd (*)(Work&, const FillOptions&);
+using Fill = StageEnd (*)(SpheresInBox&, Reporter&, const FillOptions&);
 
 void run(benchmark::State& state, Fill fill, const std::vector<double>& radii, int dimension,
          double packing_fraction) {
@@ -17,9 +17,9 @@ void run(benchmark::State& state, Fill fill, const std::vector<double>& radii, i
   const Vector<dynamic> box = testing::cube_filled_to(packing_fraction, radii, dimension);
   testing::FillCase filled(radii, box);
   StageEnd end = StageEnd::converged;
-  for (auto _ : state) end = fill(filled.work, {});
-  const Spheres<dynamic>& spheres = filled.work.spheres;
-  if (end != StageEnd::converged || spheres.r != radii || filled.work.edges != box)
+  for (auto _ : state) end = fill(filled.in_box, filled.report, {});
+  const Spheres<dynamic>& spheres = filled.in_box.spheres;
+  if (end != StageEnd::converged || spheres.r != radii || filled.in_box.edges != box)
     state.SkipWithError("not all spheres found a place");
   else if (!certify(spheres, periodic_box(box)).certified)
     state.SkipWithError("not certified");

@@ -11,6 +11,7 @@
 #include "bernal/core/dimension.hpp"
 #include "fly/fly_events.hpp"
 #include "fly/fly_patent.hpp"
+#include "support/fill_work.hpp"
 
 namespace {
 
@@ -81,24 +82,16 @@ bool in_every_dimension(std::integer_sequence<int, D...>) {
 /// Fills a cube with N unit spheres to the packing fraction.
 template <int D>
 void fill(benchmark::State& state, bool patent, std::size_t n, double phi, int batch) {
-  const Monitor monitor;
   std::size_t placed = 0;
   std::uint64_t collisions = 0;
   for (auto _ : state) {
-    EffectLog effects;
-    Work work{.spheres = Spheres<dynamic>(D),
-              .edges = Vector<dynamic>::Constant(
-                  D, std::pow(static_cast<double>(n) * ball_volume(D, 1) / phi, 1.0 / D)),
-              .seed = 1,
-              .monitor = monitor,
-              .effects = effects};
-    for (auto& column : work.spheres.x) column.assign(n, 0);
-    work.spheres.r.assign(n, 1);
-    work.target_edges = work.edges;
+    const double edge = std::pow(static_cast<double>(n) * ball_volume(D, 1) / phi, 1.0 / D);
+    testing::FillCase filled(std::vector<double>(n, 1.0), Vector<dynamic>::Constant(D, edge));
     const Fly options{.batch = batch, .dt = patent ? 0.01 : 0.25, .patience = 1e5};
-    patent ? fly_by_patent(work, options) : fly_by_events(work, options);
-    placed = work.spheres.size();
-    collisions = effects["collisions"].calls;
+    patent ? fly_by_patent(filled.in_box, filled.report, options)
+           : fly_by_events(filled.in_box, filled.report, options);
+    placed = filled.in_box.spheres.size();
+    collisions = filled.effects["collisions"].calls;
   }
   state.counters["phi"] = phi * static_cast<double>(placed) / static_cast<double>(n);
   state.counters["collisions"] = static_cast<double>(collisions);

@@ -12,6 +12,7 @@
 #include "fly/fly.hpp"
 #include "fly/fly_events.hpp"
 #include "fly/fly_patent.hpp"
+#include "support/fill_work.hpp"
 #include "support/nearest_images.hpp"
 #include "support/plans.hpp"
 
@@ -50,15 +51,9 @@ Packing packed(const std::string& toml) {
 template <int D>
 struct Flyers {
   Flyers(std::vector<double> radii, double edge, std::vector<bool> walls = {})
-      : work{.spheres = Spheres<dynamic>(D),
-             .edges = Vector<dynamic>::Constant(D, edge),
-             .walls = std::move(walls),
-             .seed = 1,
-             .monitor = monitor,
-             .effects = effects} {
-    for (const double r : radii) work.spheres.push_back(Vector<D>::Zero(), r);
-    work.target_edges = work.edges;
-    spheres.emplace(work);
+      : filled(std::move(radii), Vector<dynamic>::Constant(D, edge)) {
+    filled.task.walls = std::move(walls);
+    spheres.emplace(filled.in_box);
   }
   void put(const Vector<D>& c, const Vector<D>& v) {
     ASSERT_TRUE(spheres->is_free(c, spheres->waiting_radius(0)));
@@ -66,15 +61,15 @@ struct Flyers {
     spheres->set_velocity(static_cast<std::uint32_t>(spheres->size() - 1), v);
   }
   void expect_apart() const {
+    SpheresInBox there = filled.in_box;
+    there.leave(spheres->write_to(there.spheres));
     Packing packing;
-    packing.spheres = spheres->result();
-    packing.domain = periodic_box(work.edges, work.walls);
+    packing.spheres = there.spheres;
+    packing.domain = periodic_box(there.edges, there.task.walls);
     expect_free_of_overlap(packing);
   }
 
-  Monitor monitor;
-  EffectLog effects;
-  Work work;
+  testing::FillCase filled;
   Random random{1, stream(Stream::test)};
   std::optional<FlyingSpheres<D>> spheres;
 };
@@ -116,7 +111,7 @@ TEST_P(HardFlight, ConservesEnergyToRounding) {
   Flyers<3> flyers(radii, 17);
   const Fly options{.batch = 2000, .dt = 0.01};
   while (!flyers.spheres->queue().empty())
-    PatentFlight<3>(*flyers.spheres, options, flyers.work.random(Stream::fly)).insert();
+    PatentFlight<3>(*flyers.spheres, options, flyers.filled.report.random(Stream::fly)).insert();
   const double before = flyers.spheres->kinetic_energy();
   EXPECT_NEAR(energy_after(flyers, 500) / before, 1, 1e-11);
 }

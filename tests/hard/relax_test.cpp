@@ -61,19 +61,16 @@ class HardRelaxation : public ::testing::TestWithParam<const char*> {
 
   /// Equal spheres at given places, relaxed.
   template <class Place>
-  static Work placed_and_relaxed(int count, double edge, Place place) {
-    static const Monitor monitor;
-    static EffectLog effects;
-    Work work{.spheres = Spheres<dynamic>(3),
-              .edges = Vector<dynamic>::Constant(3, edge),
-              .placed = true,
-              .seed = 1,
-              .monitor = monitor,
-              .effects = effects};
-    for (int i = 0; i < count; ++i) work.spheres.push_back(place(i), 1.0);
-    EXPECT_EQ(relax(work, {.method = method()}), StageEnd::converged);
-    expect_free_of_overlap(work.spheres, work.edges);
-    return work;
+  static SpheresInBox placed_and_relaxed(int count, double edge, Place place) {
+    static const Task task;
+    const Monitor monitor;
+    EffectLog effects;
+    Reporter report{.seed = 1, .monitor = monitor, .effects = effects};
+    SpheresInBox in_box{.task = task, .edges = Vector<dynamic>::Constant(3, edge), .placed = true};
+    for (int i = 0; i < count; ++i) in_box.spheres.push_back(place(i), 1.0);
+    EXPECT_EQ(relax({.method = method()}, in_box, report), StageEnd::converged);
+    expect_free_of_overlap(in_box.spheres, in_box.edges);
+    return in_box;
   }
 };
 
@@ -166,25 +163,22 @@ TEST_P(HardRelaxation, OfHugeAndTinySpheresIsThatOfSpheresOfOne) {
 
 // ---- starts that a random one never is
 
-double packing_fraction(const Work& work) {
-  return static_cast<double>(work.spheres.size()) * ball_volume(3, 1) / work.edges.prod();
-}
-
 TEST_P(HardRelaxation, FromCoincidentCentres) {
-  const Work work = placed_and_relaxed(64, 5, [](int) -> Vector<dynamic> { return Vector<3>(1, 2, 3); });
-  EXPECT_GT(packing_fraction(work), 0.58);
+  const SpheresInBox there =
+      placed_and_relaxed(64, 5, [](int) -> Vector<dynamic> { return Vector<3>(1, 2, 3); });
+  EXPECT_GT(there.packing_fraction(), 0.58);
 }
 
 TEST_P(HardRelaxation, FromALine) {
-  const Work work =
+  const SpheresInBox there =
       placed_and_relaxed(64, 64, [](int i) -> Vector<dynamic> { return Vector<3>(1.0 * i, 32, 32); });
-  EXPECT_GT(packing_fraction(work), 0.58);
+  EXPECT_GT(there.packing_fraction(), 0.58);
 }
 
 TEST_P(HardRelaxation, FromASimpleCubicLattice) {
-  const Work work =
+  const SpheresInBox there =
       placed_and_relaxed(64, 4, [](int i) -> Vector<dynamic> { return Vector<3>(i % 4, i / 4 % 4, i / 16); });
-  EXPECT_GT(packing_fraction(work), 0.58);  // the lattice has 0.5236
+  EXPECT_GT(there.packing_fraction(), 0.58);  // the lattice has 0.5236
 }
 
 // ---- boxes that are asked for

@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -12,17 +13,18 @@ namespace bernal::testing {
 struct FillCase {
   EffectLog effects;
   Monitor monitor;
-  Work work;
+  Task task;
+  SpheresInBox in_box;
+  Reporter report;
 
   FillCase(std::vector<double> radii, const Vector<dynamic>& target, std::uint64_t seed = 1)
-      : work{.spheres = Spheres<dynamic>(static_cast<int>(target.size())),
-             .edges = target,
-             .target_edges = target,
-             .seed = seed,
-             .monitor = monitor,
-             .effects = effects} {
-    for (auto& column : work.spheres.x) column.assign(radii.size(), 0);
-    work.spheres.r = std::move(radii);
+      : task{.target_edges = target},
+        in_box{.task = task, .spheres = Spheres<dynamic>(static_cast<int>(target.size())), .edges = target},
+        report{.seed = seed, .monitor = monitor, .effects = effects} {
+    in_box.spheres.resize(radii.size());
+    in_box.spheres.r = std::move(radii);
+    in_box.tags.resize(in_box.spheres.size());
+    std::iota(in_box.tags.begin(), in_box.tags.end(), 0u);
   }
   FillCase(const FillCase&) = delete;
   FillCase& operator=(const FillCase&) = delete;

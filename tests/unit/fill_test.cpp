@@ -29,12 +29,12 @@ std::vector<double> lognormal_radii(std::size_t n, double sigma) {
 }
 
 /// In exact arithmetic, over all pairs.
-void expect_free_of_overlap(const Work& work) {
-  ASSERT_EQ(work.edges, *work.target_edges);
-  with_dimension(work.dimension(), EveryDimension{}, [&](auto dimension) {
+void expect_free_of_overlap(const SpheresInBox& in_box) {
+  ASSERT_EQ(in_box.edges, *in_box.task.target_edges);
+  with_dimension(in_box.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    const Spheres<D> spheres = work.spheres.in<D>();
-    const Vector<D> edges = work.edges;
+    const Spheres<D> spheres = in_box.spheres.in<D>();
+    const Vector<D> edges = in_box.edges;
     for (std::size_t i = 0; i < spheres.size(); ++i)
       for (int k = 0; k < D; ++k) {
         EXPECT_GE(spheres.center(i)[k], 0);
@@ -46,9 +46,9 @@ void expect_free_of_overlap(const Work& work) {
 
 void expect_filled(const FillCase& filled, StageEnd end, const std::vector<double>& radii) {
   EXPECT_EQ(end, StageEnd::converged);
-  EXPECT_EQ(filled.work.spheres.r, radii);
-  EXPECT_TRUE(filled.work.placed);
-  expect_free_of_overlap(filled.work);
+  EXPECT_EQ(filled.in_box.spheres.r, radii);
+  EXPECT_TRUE(filled.in_box.placed);
+  expect_free_of_overlap(filled.in_box);
 }
 
 /// `part` is in the order of `all`, of which some may be missing.
@@ -73,7 +73,7 @@ TEST_P(FillDimensions, EqualSpheresFillACubeDensely) {
   const std::vector<double> radii(300, 1.0);
   // A few hundred spheres do not come as close as many.
   FillCase filled(radii, cube_filled_to(0.97 * dense[dimension - 1], radii, dimension));
-  expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+  expect_filled(filled, fill_by_relaxation(filled.in_box, filled.report, {}), radii);
 }
 
 TEST_P(FillDimensions, MixedSpheresFillAnOblongBox) {
@@ -82,7 +82,7 @@ TEST_P(FillDimensions, MixedSpheresFillAnOblongBox) {
   Vector<dynamic> proportions = Vector<dynamic>::Ones(dimension);
   proportions[dimension - 1] = 1.7;
   FillCase filled(radii, box_filled_to(0.85 * dense[dimension - 1], radii, proportions));
-  expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+  expect_filled(filled, fill_by_relaxation(filled.in_box, filled.report, {}), radii);
 }
 
 TEST_P(FillDimensions, ANarrowBoxHoldsSpheresThatMeetInSeveralImages) {
@@ -91,39 +91,39 @@ TEST_P(FillDimensions, ANarrowBoxHoldsSpheresThatMeetInSeveralImages) {
   edges[dimension - 1] = 4.2;
   const std::vector<double> radii{1, 1};
   FillCase filled(radii, edges);
-  expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+  expect_filled(filled, fill_by_relaxation(filled.in_box, filled.report, {}), radii);
 }
 
 TEST_P(FillDimensions, ASphereMayTouchItsOwnImage) {
   const std::vector<double> radii{0.5};
   FillCase filled(radii, Vector<dynamic>::Ones(GetParam()));
-  ASSERT_TRUE(fits_box(filled.work));
-  expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+  ASSERT_TRUE(fits_box(filled.in_box));
+  expect_filled(filled, fill_by_relaxation(filled.in_box, filled.report, {}), radii);
 }
 
 TEST_P(FillDimensions, ASphereThatOverlapsItselfIsRefused) {
   FillCase filled({0.5}, Vector<dynamic>::Constant(GetParam(), std::nextafter(1.0, 0.0)));
-  EXPECT_FALSE(fits_box(filled.work));
-  EXPECT_THROW(fill_by_relaxation(filled.work, {}), Error);
-  EXPECT_THROW(fill_by_classes(filled.work, {}), Error);
+  EXPECT_FALSE(fits_box(filled.in_box));
+  EXPECT_THROW(fill_by_relaxation(filled.in_box, filled.report, {}), Error);
+  EXPECT_THROW(fill_by_classes(filled.in_box, filled.report, {}), Error);
 }
 
 TEST_P(FillDimensions, WhatDoesNotFitIsLeftOutAndTheRestIsFree) {
   const int dimension = GetParam();
   const std::vector<double> radii = lognormal_radii(dimension < 6 ? 100 : 40, 0.1);
   FillCase filled(radii, cube_filled_to(dimension == 1 ? 1.1 : 1.5 * dense[dimension - 1], radii, dimension));
-  EXPECT_EQ(fill_by_relaxation(filled.work, {}), StageEnd::full);
-  EXPECT_LT(filled.work.spheres.size(), radii.size());
-  EXPECT_GT(filled.work.spheres.size(), radii.size() / 3);
-  EXPECT_TRUE(is_subsequence(filled.work.spheres.r, radii));
-  expect_free_of_overlap(filled.work);
+  EXPECT_EQ(fill_by_relaxation(filled.in_box, filled.report, {}), StageEnd::full);
+  EXPECT_LT(filled.in_box.spheres.size(), radii.size());
+  EXPECT_GT(filled.in_box.spheres.size(), radii.size() / 3);
+  EXPECT_TRUE(is_subsequence(filled.in_box.spheres.r, radii));
+  expect_free_of_overlap(filled.in_box);
 }
 
 TEST_P(FillDimensions, EqualSpheresComeByInsertionToo) {
   const int dimension = GetParam();
   const std::vector<double> radii(100, 1.0);
   FillCase filled(radii, cube_filled_to(0.7 * dense[dimension - 1], radii, dimension));
-  expect_filled(filled, fill_by_classes(filled.work, {}), radii);
+  expect_filled(filled, fill_by_classes(filled.in_box, filled.report, {}), radii);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FillDimensions, ::testing::Range(1, 9));
@@ -134,11 +134,11 @@ TEST(Fill, TheSameSeedGivesTheSameBitsAndAnotherDoesNot) {
     const Vector<dynamic> box = cube_filled_to(0.9 * dense[dimension - 1], radii, dimension);
     for (const auto fill : {fill_by_relaxation, fill_by_classes}) {
       FillCase one(radii, box), again(radii, box), other(radii, box, 2);
-      fill(one.work, {});
-      fill(again.work, {});
-      fill(other.work, {});
-      EXPECT_EQ(one.work.spheres, again.work.spheres);
-      EXPECT_NE(one.work.spheres, other.work.spheres);
+      fill(one.in_box, one.report, {});
+      fill(again.in_box, again.report, {});
+      fill(other.in_box, other.report, {});
+      EXPECT_EQ(one.in_box.spheres, again.in_box.spheres);
+      EXPECT_NE(one.in_box.spheres, other.in_box.spheres);
     }
   }
 }
@@ -146,56 +146,56 @@ TEST(Fill, TheSameSeedGivesTheSameBitsAndAnotherDoesNot) {
 TEST(Fill, RodsFillALineWhoseLengthIsHardlyMore) {
   const std::vector<double> radii = lognormal_radii(1000, 0.3);
   FillCase filled(radii, cube_filled_to(1 - 1e-6, radii, 1));
-  expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+  expect_filled(filled, fill_by_relaxation(filled.in_box, filled.report, {}), radii);
 }
 
 TEST(Fill, NoSpheresAreAllThere) {
   FillCase filled({}, Vector<dynamic>::Ones(3));
-  EXPECT_EQ(fill_by_relaxation(filled.work, {}), StageEnd::converged);
-  EXPECT_EQ(fill_by_classes(filled.work, {}), StageEnd::converged);
+  EXPECT_EQ(fill_by_relaxation(filled.in_box, filled.report, {}), StageEnd::converged);
+  EXPECT_EQ(fill_by_classes(filled.in_box, filled.report, {}), StageEnd::converged);
 }
 
 TEST(Fill, OverlapThatIsAllowedMakesRoom) {
   const std::vector<double> radii(200, 1.0);
   FillCase filled(radii, cube_filled_to(0.68, radii, 3));
-  filled.work.allowed_overlap = 0.05;
-  EXPECT_EQ(fill_by_relaxation(filled.work, {}), StageEnd::converged);
-  EXPECT_EQ(filled.work.spheres.r, radii);
-  for (double& r : filled.work.spheres.r) r *= 1 - 0.05 - 1e-12;
-  expect_free_of_overlap(filled.work);
+  filled.task.allowed_overlap = 0.05;
+  EXPECT_EQ(fill_by_relaxation(filled.in_box, filled.report, {}), StageEnd::converged);
+  EXPECT_EQ(filled.in_box.spheres.r, radii);
+  for (double& r : filled.in_box.spheres.r) r *= 1 - 0.05 - 1e-12;
+  expect_free_of_overlap(filled.in_box);
 }
 
 TEST(Fill, SpheresStartWhereTheyAre) {
   const std::vector<double> radii(27, 0.45);
   FillCase filled(radii, Vector<dynamic>::Constant(3, 3.0));
-  filled.work.edges = Vector<dynamic>::Constant(3, 6.0);
-  filled.work.placed = true;
+  filled.in_box.edges = Vector<dynamic>::Constant(3, 6.0);
+  filled.in_box.placed = true;
   for (std::size_t i = 0; i < 27; ++i)
-    filled.work.spheres.set_center(
+    filled.in_box.spheres.set_center(
         i, Vector<3>(1 + 2.0 * static_cast<double>(i % 3), 1 + 2.0 * static_cast<double>(i / 3 % 3),
                      1 + 2.0 * static_cast<double>(i / 9)));
-  const Spheres<dynamic> before = filled.work.spheres;
-  expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+  const Spheres<dynamic> before = filled.in_box.spheres;
+  expect_filled(filled, fill_by_relaxation(filled.in_box, filled.report, {}), radii);
   for (std::size_t i = 0; i < 27; ++i)
-    EXPECT_LT((filled.work.spheres.center(i) - 0.5 * before.center(i)).norm(), 1e-5);
+    EXPECT_LT((filled.in_box.spheres.center(i) - 0.5 * before.center(i)).norm(), 1e-5);
 }
 
 TEST(Fill, SpheresInOnePlaceComeApart) {
   const std::vector<double> radii(50, 1.0);
   for (const int dimension : {2, 3, 4}) {
     FillCase filled(radii, cube_filled_to(0.5 * dense[dimension - 1], radii, dimension));
-    filled.work.placed = true;
-    expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+    filled.in_box.placed = true;
+    expect_filled(filled, fill_by_relaxation(filled.in_box, filled.report, {}), radii);
   }
 }
 
 TEST(Fill, TheLimitOnSweepsEndsIt) {
   const std::vector<double> radii(300, 1.0);
   FillCase filled(radii, cube_filled_to(0.62, radii, 3));
-  EXPECT_EQ(fill_by_relaxation(filled.work, {.sweeps = 30}), StageEnd::hit_limit);
-  EXPECT_LT(filled.work.spheres.size(), radii.size());
-  EXPECT_FALSE(filled.work.spheres.empty());
-  expect_free_of_overlap(filled.work);
+  EXPECT_EQ(fill_by_relaxation(filled.in_box, filled.report, {.sweeps = 30}), StageEnd::hit_limit);
+  EXPECT_LT(filled.in_box.spheres.size(), radii.size());
+  EXPECT_FALSE(filled.in_box.spheres.empty());
+  expect_free_of_overlap(filled.in_box);
 }
 
 TEST(Fill, CancelledItLeavesWhatIsFree) {
@@ -204,9 +204,9 @@ TEST(Fill, CancelledItLeavesWhatIsFree) {
     FillCase filled(radii, cube_filled_to(0.62, radii, 3));
     int asked = 0;
     filled.monitor.cancelled = [&] { return ++asked > 5; };
-    EXPECT_EQ(fill(filled.work, {}), StageEnd::cancelled);
-    EXPECT_FALSE(filled.work.spheres.empty());
-    expect_free_of_overlap(filled.work);
+    EXPECT_EQ(fill(filled.in_box, filled.report, {}), StageEnd::cancelled);
+    EXPECT_FALSE(filled.in_box.spheres.empty());
+    expect_free_of_overlap(filled.in_box);
   }
 }
 
@@ -218,15 +218,15 @@ TEST(FillByRelaxation, KeepsWholeSpheresBetweenWalls) {
     SCOPED_TRACE(dimension);
     const std::vector<double> radii = lognormal_radii(200, 0.1);
     FillCase filled(radii, cube_filled_to(reached[dimension - 1], radii, dimension));
-    filled.work.walls.assign(static_cast<std::size_t>(dimension), true);
-    filled.work.walls.back() = dimension == 1;  // one axis is periodic where there are several
-    expect_filled(filled, fill_by_relaxation(filled.work, {}), radii);
+    filled.task.walls.assign(static_cast<std::size_t>(dimension), true);
+    filled.task.walls.back() = dimension == 1;  // one axis is periodic where there are several
+    expect_filled(filled, fill_by_relaxation(filled.in_box, filled.report, {}), radii);
     for (int k = 0; k < dimension; ++k) {
-      if (!filled.work.has_wall(k)) continue;
-      const std::vector<double>& x = filled.work.spheres.x[static_cast<std::size_t>(k)];
+      if (!filled.task.has_wall(k)) continue;
+      const std::vector<double>& x = filled.in_box.spheres.x[static_cast<std::size_t>(k)];
       for (std::size_t i = 0; i < radii.size(); ++i) {
         EXPECT_GE(x[i], radii[i]);
-        EXPECT_LE(x[i] + radii[i], filled.work.edges[k]);
+        EXPECT_LE(x[i] + radii[i], filled.in_box.edges[k]);
       }
     }
   }
@@ -235,31 +235,31 @@ TEST(FillByRelaxation, KeepsWholeSpheresBetweenWalls) {
 TEST(FillByRelaxation, ABoxAskedToHoldManyTimesItsFillIsFilledNevertheless) {
   const std::vector<double> radii(1000, 1.0);
   FillCase filled(radii, cube_filled_to(4, radii, 3));
-  EXPECT_EQ(fill_by_relaxation(filled.work, {}), StageEnd::full);
-  expect_free_of_overlap(filled.work);
-  EXPECT_GT(filled.work.spheres.size(), 120u);  // 0.48 of the box, well above what random places reach
+  EXPECT_EQ(fill_by_relaxation(filled.in_box, filled.report, {}), StageEnd::full);
+  expect_free_of_overlap(filled.in_box);
+  EXPECT_GT(filled.in_box.spheres.size(), 120u);  // 0.48 of the box, well above what random places reach
 }
 
 TEST(FillByClasses, WidelyDifferentSizesFillABox) {
   const std::vector<double> radii = testing::three_classes(1000);
   FillCase filled(radii, cube_filled_to(0.65, radii, 3));
-  expect_filled(filled, fill_by_classes(filled.work, {}), radii);
+  expect_filled(filled, fill_by_classes(filled.in_box, filled.report, {}), radii);
 }
 
 TEST(FillByClasses, LooseSpheresNeedNoRelaxation) {
   const std::vector<double> radii = testing::three_classes(1000);
   FillCase filled(radii, cube_filled_to(0.45, radii, 3));
-  expect_filled(filled, fill_by_classes(filled.work, {}), radii);
+  expect_filled(filled, fill_by_classes(filled.in_box, filled.report, {}), radii);
   for (const Effect& effect : filled.effects.all()) EXPECT_NE(effect.name, "relaxation");
 }
 
 TEST(FillByClasses, SpheresThatHavePlacesKeepThem) {
   const std::vector<double> radii(50, 1.0);
   FillCase filled(radii, cube_filled_to(0.3, radii, 3));
-  ASSERT_EQ(fill_by_classes(filled.work, {}), StageEnd::converged);
-  const Spheres<dynamic> before = filled.work.spheres;
-  ASSERT_EQ(fill_by_classes(filled.work, {}), StageEnd::converged);
-  EXPECT_EQ(filled.work.spheres, before);
+  ASSERT_EQ(fill_by_classes(filled.in_box, filled.report, {}), StageEnd::converged);
+  const Spheres<dynamic> before = filled.in_box.spheres;
+  ASSERT_EQ(fill_by_classes(filled.in_box, filled.report, {}), StageEnd::converged);
+  EXPECT_EQ(filled.in_box.spheres, before);
 }
 
 }  // namespace fill_test

@@ -109,9 +109,9 @@ StageEnd end_of_polish(int count, double tolerance, const Monitor& monitor) {
   Spheres<3> spheres = packing.spheres.in<3>();
   Vector<3> edges = std::get<Box>(packing.domain).size;
   EffectLog effects;
-  Work work{
-      .spheres = Spheres<dynamic>(3), .edges = edges, .seed = 1, .monitor = monitor, .effects = effects};
-  return polish<3>(spheres, edges, tolerance, work);
+  Reporter report{.seed = 1, .monitor = monitor, .effects = effects};
+  const Task task;
+  return polish<3>(spheres, edges, tolerance, SpheresInBox{.task = task, .edges = edges}, report);
 }
 
 TEST(Polish, EndsSoonWhenCancelled) {

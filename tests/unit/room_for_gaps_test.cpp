@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -194,18 +195,22 @@ TEST(Coats, ComeOffSoThatTheDrawnRadiiAreLeft) {
   for (int k = 0; k < 500; ++k) drawn.push_back(sequence.next());
   std::vector<double> in_order = supply.radii(), reversed = in_order;
   for (std::size_t k = 0; k < 500; ++k) EXPECT_GE(in_order[k], drawn[k] + 0.03 * (1 - 1e-15));
-  EXPECT_EQ(take_coats_off(in_order, supply, 0.03, 1), 1);
+  std::vector<std::uint32_t> tags(500);
+  std::iota(tags.begin(), tags.end(), 0u);
+  EXPECT_EQ(take_coats_off(in_order, tags, supply, 0.03), 1);
   EXPECT_EQ(in_order, drawn);
   std::ranges::reverse(reversed);
-  take_coats_off(reversed, supply, 0.03, 1);
+  std::ranges::reverse(tags);
+  take_coats_off(reversed, tags, supply, 0.03);
   std::ranges::reverse(reversed);
+  std::ranges::reverse(tags);
   EXPECT_EQ(reversed, drawn);
 
   for (const double scale : {1.01, 0.99}) {
     Supply scaled(source, 1, target);
     scaled.multiply_by(scale);
     std::vector<double> grown = scaled.radii();
-    const double of_drawn = take_coats_off(grown, scaled, 0.03, scale);
+    const double of_drawn = take_coats_off(grown, tags, scaled, 0.03);
     double least = 1;
     for (std::size_t k = 0; k < 500; ++k) {
       EXPECT_NEAR(grown[k], of_drawn * drawn[k], 1e-15);
