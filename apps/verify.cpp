@@ -107,7 +107,7 @@ Rest rest_of(const VerifyCall& call, const Scene& scene, const Spheres<dynamic>&
                            {.gap = scene.gap,
                             .wall_gap = scene.wall_gap,
                             .tolerance = call.tolerance,
-                            .friction = friction_in(scene.target.bed),
+                            .friction = scene.target.bed.friction(),
                             .list = !call.list.empty()});
   if (const std::size_t most = listed(call.list); rest.list.size() > most) rest.list.resize(most);
   return rest;

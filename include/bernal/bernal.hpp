@@ -22,6 +22,7 @@
 #include "bernal/settle/refill.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"
 #include "bernal/soft/relax.hpp"
+#include "bernal/soft/settle.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "bernal/version.hpp"
 #include "bernal/voxels/voxels.hpp"

@@ -46,6 +46,24 @@ const StageEntry& entry_of(const Stage& stage) {
   throw Error(ErrorCode::bad_scene, "these are the options of no stage", stage.locations.whole);
 }
 
+std::optional<Pressing> pressing_of(const Stage& stage) {
+  const StageEntry& entry = entry_of(stage);
+  if (!entry.pressing) return {};
+  return entry.pressing(entry.table.options(stage));
+}
+
+Vector<3> down_in(const Scene& scene) {
+  Vector<3> down = -Vector<3>::Unit(scene.dimension() - 1);
+  for (const Stage& stage : scene.stages)
+    if (const auto pressed = pressing_of(stage)) down = pressed->direction;
+  return down;
+}
+
+BedOptions bed_options_of(const Scene& scene) {
+  const bool ends_settled = !scene.stages.empty() && pressing_of(scene.stages.back()).has_value();
+  return {.direction = down_in(scene), .is_bed = ends_settled, .friction = scene.target.bed.friction()};
+}
+
 bool any_in_bed(const Scene& scene) {
   return std::ranges::any_of(scene.stages,
                              [&](const Stage& stage) { return table_of(stage).traits.stands_in_bed(scene); });

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 
 #include "bernal/plan/plan.hpp"
@@ -11,6 +12,9 @@ std::span<const StageEntry* const> stage_entries();
 
 /// The one with these options. Throws Error{bad_scene} where there is none.
 const StageEntry& entry_of(const Stage& stage);
+
+/// How the stage presses spheres, if it does.
+std::optional<Pressing> pressing_of(const Stage& stage);
 
 /// Whether spheres stand in a bed for any stage of the scene.
 bool any_in_bed(const Scene& scene);

@@ -1,22 +1,14 @@
 #pragma once
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "bernal/scene/scene.hpp"
 #include "core/archive.hpp"
+#include "work/pressing.hpp"
 #include "work/reporter.hpp"
 #include "work/spheres_in_bed.hpp"
 
 namespace bernal {
-
-/// How a stage presses spheres.
-struct Pressing {
-  Vector<3> direction;
-  bool loosely;             ///< by a tolerance that leaves spheres which do not rest
-  double friction;          ///< the angle up to which it may hold spheres, in degrees
-  std::string_view remedy;  ///< of spheres that do not rest as they should
-};
 
 /// How the spheres were pressed last, as long as they are as that left them: a stage that only places, and
 /// finds no place, changes nothing; one that moves spheres in another way, or puts more among them, makes

@@ -225,6 +225,12 @@ std::vector<schema::Key> compression_keys() {
 
 std::vector<schema::Choice> ends_of_compression() { return {{{"rest"}, {"tolerance"}}}; }
 
+Pressing pressing_of_compression(const Compress& c) {
+  return {direction_of(c.direction), c.tolerance.has_value(), 0,
+          c.tolerance ? "leave \"tolerance\" out of the stages that settle, or make it smaller"
+                      : "let the stages that settle do more, by \"max_iterations\""};
+}
+
 template <>
 const StageEntry& entry_of<Compress>() {
   static const StageEntry entry = {
@@ -236,6 +242,7 @@ const StageEntry& entry_of<Compress>() {
       .act_in_bed = of_options(compress),
       .may_bring = {"neighbour lists", "compression"},
       .effects = of_options(effects_of_compression),
+      .pressing = of_options(pressing_of_compression),
       .require = of_options(+[](const Compress& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), direction_of(o.direction));
       })};

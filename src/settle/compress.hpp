@@ -29,6 +29,9 @@ StageEnd compress(const Compress& options, SpheresInBed& in_bed, Reporter& repor
 /// sweeps a round, and those of the compression.
 StageEnd shake(const Shake& options, SpheresInBed& in_bed, Reporter& report);
 
+/// How compression presses.
+Pressing pressing_of_compression(const Compress&);
+
 /// Throws Error{bad_scene} if spheres pressed along `direction` would fall for ever: it must have no
 /// component along a periodic axis.
 void require_support(const Boundary<3>& boundary, const Vector<3>& direction);

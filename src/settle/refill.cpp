@@ -158,6 +158,7 @@ const StageEntry& entry_of<Refill>() {
       .act_in_bed = of_options(refill),
       .may_bring = {"refilling", "neighbour lists", "compression", "shaking"},
       .effects = of_options(effects_of_refilling),
+      .pressing = of_options(+[](const Refill& o) { return pressing_of_compression(o.shake.compress); }),
       .require = of_options(+[](const Refill& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), direction_of(o.shake.compress.direction));
       })};

@@ -4,9 +4,6 @@
 
 namespace bernal {
 
-/// The largest angle of friction for loose beds, in degrees: a coefficient of 1.
-inline constexpr double most_friction = 45;
-
 struct RollToRest {
   double still = 1e-7;   ///< spheres that move less than this, in radii, are at rest and wake no neighbour
   double friction = 0;   ///< an angle in degrees: spheres rest where the steepest way down is flatter

@@ -53,6 +53,7 @@ const StageEntry& entry_of<Shake>() {
       .act_in_bed = of_options(shake),
       .may_bring = {"neighbour lists", "shaking", "compression"},
       .effects = of_options(effects_of_shaking),
+      .pressing = of_options(+[](const Shake& o) { return pressing_of_compression(o.compress); }),
       .require = of_options(+[](const Shake& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), direction_of(o.compress.direction));
       })};

@@ -152,6 +152,10 @@ const StageEntry& entry_of<Settle>() {
       .act_in_bed = of_options(settle),
       .may_bring = {"insertion", "neighbour lists", "relaxation", "tapping", "rolling"},
       .effects = of_options(effects_of_settling),
+      .pressing = of_options(+[](const Settle& o) {
+        return Pressing{direction_of(o.direction), o.rest > Settle{}.rest, o.bed.friction(),
+                        "make \"rest\" of settle smaller, or take another \"seed\""};
+      }),
       .require = of_options(+[](const Settle& o, const Domain& domain, double, const FillTask&) {
         require_support(boundary_of<3>(domain), direction_of(o.direction));
       }),

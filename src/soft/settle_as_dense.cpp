@@ -151,7 +151,7 @@ class Attempts {
 
   /// The least angle at which the bed is as porous as it is to be, by bisection.
   void hold_by_friction() {
-    double low = 0, high = most_friction;
+    double low = 0, high = BedTarget::most_friction;
     double start = std::min(aim_.porosity + above_aim, most_start);
     for (int k = 0; k < most_attempts && attempt(start, high) < 0 && start < most_start; ++k)
       start = std::min(start + above_aim, most_start);

@@ -6,6 +6,7 @@
 
 #include "bernal/scene/packing.hpp"
 #include "scene/stage_table.hpp"
+#include "work/pressing.hpp"
 #include "work/reporter.hpp"
 #include "work/spheres_in_bed.hpp"
 #include "work/spheres_in_box.hpp"
@@ -50,6 +51,8 @@ struct StageEntry {
   /// Those that it brings with it there, with what they are expected to cost. Throws Error{bad_argument}
   /// where the options ask for what cannot be done.
   std::function<std::vector<PlanItem>(const void*, const Outlook&)> effects = {};
+  /// Of one that presses spheres along a direction: how.
+  std::function<Pressing(const void*)> pressing = {};
   /// In a bed: throws Error{bad_scene} where a container, in the packer's coordinates, is none for it and
   /// spheres of that radius.
   std::function<void(const void*, const Domain&, double smallest_radius, const FillTask&)> require = {};

@@ -232,7 +232,7 @@ void say_aims(int seeds, double most) {
       "|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
   for (const double across : {4.0, 5.0, 6.0, 8.0, 10.0, 20.0}) {
     const Kind vibrated = beds_of(across, 40, "vibrated", seeds, most),
-               loose = beds_of(across, 40, "loose", seeds, most, most_friction);
+               loose = beds_of(across, 40, "loose", seeds, most, BedTarget::most_friction);
     std::printf("| %g | %s | %.4f | %s | %.4f | %zu | %zu | %zu | %zu | %zu | %zu |\n", across,
                 vibrated.text().c_str(), porosity_vibrated(across), loose.text().c_str(),
                 porosity_loose(across), vibrated.spheres + loose.spheres,

@@ -103,7 +103,8 @@ TEST(Beds, SayTheirPorosityAndThatItIsNotWhatWasAsked) {
   // What nothing else holds up is held by friction, and that is said.
   const Packing airy = bed("porosity = 0.6\n");
   EXPECT_EQ(airy.outcome, Outcome::converged) << airy.reason;
-  const Rest rest = measure_rest(airy.spheres, airy.domain, {0, 0, -1}, {.friction = most_friction});
+  const Rest rest =
+      measure_rest(airy.spheres, airy.domain, {0, 0, -1}, {.friction = BedTarget::most_friction});
   EXPECT_EQ(rest.unsettled, 0u);
   EXPECT_EQ(rest.held_by_friction, unsettled(airy));
   EXPECT_GT(rest.held_by_friction, 50u);

@@ -99,7 +99,8 @@ void expect_aim_reached(double diameters, int count, std::uint64_t seed) {
   }
   EXPECT_EQ(measure_rest(vibrated.spheres, vibrated.domain, down).unsettled, 0u);
   EXPECT_EQ(measure_rest(poured.spheres, poured.domain, down).unsettled, 0u);
-  EXPECT_EQ(measure_rest(loose.spheres, loose.domain, down, {.friction = most_friction}).unsettled, 0u);
+  EXPECT_EQ(measure_rest(loose.spheres, loose.domain, down, {.friction = BedTarget::most_friction}).unsettled,
+            0u);
   const double as_vibrated = porosity_of_core(vibrated, diameters),
                as_poured = porosity_of_core(poured, diameters), as_loose = porosity_of_core(loose, diameters);
   EXPECT_LT(as_vibrated, as_poured);
@@ -151,7 +152,8 @@ double steepest_way_tried(const Packing& packing, std::size_t i, double radius_o
 
 TEST(BedDensity, FrictionHoldsNoSphereBeyondItsAngle) {
   const Packing packing = bed_of(8, 250, "porosity = 0.6");
-  const Rest rest = measure_rest(packing.spheres, packing.domain, down, {.friction = most_friction});
+  const Rest rest =
+      measure_rest(packing.spheres, packing.domain, down, {.friction = BedTarget::most_friction});
   EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
   ASSERT_GT(rest.held_by_friction, 0u) << packing.reason;
   EXPECT_EQ(rest.unsettled, 0u);

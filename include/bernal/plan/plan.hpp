@@ -79,10 +79,6 @@ Vector<3> down_in(const Scene& scene);
 /// Of its bed: down, and that there is one, where the last stage settles.
 BedOptions bed_options_of(const Scene& scene);
 
-/// The angle up to which friction may hold spheres of such a bed, in degrees: 0, but of one that is asked to
-/// be loose, or as porous as may need it.
-double friction_in(const BedTarget& bed);
-
 /// Those of the scene's CAD files that are no longer what the scene names by its `sha256`.
 std::vector<std::filesystem::path> changed_files(const Scene& scene);
 

@@ -23,6 +23,12 @@ struct BedTarget {
   /// The height that either of these means, in the scene's unit: by `build`; 0 where none is given.
   double above_ground = 0;
 
+  /// The largest angle of friction for loose beds, in degrees: a coefficient of 1.
+  static constexpr double most_friction = 45;
+  /// The angle up to which friction may hold the spheres, in degrees: above 0 only for beds that are to be
+  /// loose, or as porous as may need it.
+  double friction() const { return porosity || density == Density::loose ? most_friction : 0; }
+
   bool gives_height() const { return height || layers; }
   /// Whether the scene asks for a bed at all.
   bool is_asked() const { return density || top || porosity || gives_height(); }
