@@ -121,7 +121,7 @@ TEST(ExactBox, IsPackedAndTheResultIsCertified) {
     EXPECT_TRUE(certify(packing.spheres, packing.domain, {.wall_gap = packing.scene.wall_gap}).certified)
         << spheres;
     const Scene again = parse_scene(scene_as_toml(packing.scene), "scene.toml");
-    const Box &was = std::get<Box>(packing.domain), &is = std::get<Box>(domain_of(again));
+    const Box was = std::get<Box>(packing.domain), is = std::get<Box>(domain_of(again));
     EXPECT_TRUE(was.corner == is.corner && was.size == is.size);
   }
 }

@@ -7,6 +7,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/formats/import.hpp"
 #include "bernal/result/read_packing.hpp"
+#include "bernal/scene/read_scene.hpp"
 #include "support/export_packings.hpp"
 #include "support/exports.hpp"
 
@@ -115,14 +116,14 @@ TEST(ImportRoundTrip, AResultComesBackToTheBit) {
     const Folder folder;
     write_packing(packing, folder / "out");
     const ImportedPacking imported =
-        import_packing(folder / "out/spheres.csv", {.container = folder / "out/scene.toml"});
+        import_packing(folder / "out/spheres.csv", {.container = read_scene(folder / "out/scene.toml")});
     EXPECT_EQ(imported.packing.spheres, packing.spheres);
     EXPECT_EQ(imported.packing.scene.unit, packing.scene.unit);
     EXPECT_EQ(name_of(imported.packing.domain), name_of(packing.domain));
     EXPECT_EQ(imported.packing.volume, packing.volume);
     // The same from what ParaView reads, which says unit and dimension, too.
     const ImportedPacking points =
-        import_packing(folder / "out/spheres.vtp", {.container = folder / "out/scene.toml"});
+        import_packing(folder / "out/spheres.vtp", {.container = read_scene(folder / "out/scene.toml")});
     EXPECT_EQ(points.packing.spheres, packing.spheres);
     EXPECT_EQ(import_packing(folder / "out/spheres.vtp").packing.scene.unit, packing.scene.unit);
   }

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "bernal/domain/boundary.hpp"
+#include "bernal/core/boundary.hpp"
 #include "soft/soft_blocks.hpp"
 #include "support/soft_crowds.hpp"
 
