@@ -14,41 +14,39 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Of a sphere. Fewer: more is spent on starting periods; more: velocities drift from their unit.
+/// Per sphere. With fewer, starting periods costs more; with more, velocities drift from their unit.
 constexpr double collisions_a_period = 16;
 /// A period after one that gained more kinetic energy than this is shorter.
 constexpr double most_heating = 0.1;
 constexpr double fastest_change_of_duration = 4;
-/// Of the first period, a mean diameter, for each sphere: a few collisions in all, so that it hardly matters
-/// to spheres that are jammed from the start, but not so short that a single collision looks like pressure.
+/// The first period in mean diameters per sphere: a few collisions in all, which hardly matter to spheres
+/// that are jammed from the start, but enough that a single collision does not look like pressure.
 constexpr double first_duration = 1;
-/// Of a period, in shortest edges at thermal speed: where spheres hardly meet, courses of many edges would
-/// cost digits.
+/// The longest period, in shortest edges at thermal speed: paths of many edges would cost digits.
 constexpr double longest_flight = 4;
-/// Of the size, in a period.
+/// The largest growth of the size in a period.
 constexpr double most_growth = 0.1;
-/// Of a sphere, some thirty times what a period is made for: few spheres that jam in the midst of one would
-/// collide ever faster and never come to its end.
+/// Per sphere, about thirty times the usual number: a few spheres that jam within a period would collide ever
+/// faster and never reach its end.
 constexpr std::uint64_t most_events_a_period = 400;
-/// Events between two looks at whether to stop.
+/// Events between two questions whether to stop.
 constexpr std::uint64_t events_a_look = 4096;
-/// Of the thermal speed: what a collision changes at least.
+/// The least change of velocity in a collision, as a share of the thermal speed.
 constexpr double least_kick = 1e-14;
-/// Events in the calendar for each collision: spheres that look again, spheres that leave.
+/// Events in the calendar per collision: spheres whose next event is sought again, and departures from
+/// shells.
 constexpr double events_a_collision = 1.8;
-/// So few the caches hold; of more the memory is asked for what events will need, in steps with so many
-/// events between them.
-constexpr std::size_t few_spheres = 3000;
-constexpr std::size_t step_ahead = 2;
+/// Above this number the caches do not hold all spheres, and what is needed in `step_ahead` events is
+/// prefetched.
+constexpr std::size_t few_spheres = 3000, step_ahead = 2;
 
-/// Of the mean diameter: the shells to begin with, and their limits; none where the lists are so short that
-/// longer ones would cost nothing.
-constexpr double first_freedom = 0.15, least_freedom = 0.02, most_freedom = 1.0;
-constexpr double short_list = 4;
-/// Departures for each collision between which the shells are as large as they should be.
-constexpr double few_departures = 0.06, many_departures = 0.15;
-constexpr double change_of_freedom = 1.3;
-/// What lists leave for growth, of the shells.
+/// Width of the shells in mean diameters: at first, and its limits, which do not hold for lists shorter than
+/// `short_list`.
+constexpr double first_freedom = 0.15, least_freedom = 0.02, most_freedom = 1.0, short_list = 4;
+/// The shells are as wide as they should be while departures per collision are between these; else their
+/// width changes by a factor.
+constexpr double few_departures = 0.06, many_departures = 0.15, change_of_freedom = 1.3;
+/// The share of the shells that lists leave for growth.
 constexpr double room_to_grow = 0.25;
 
 }  // namespace

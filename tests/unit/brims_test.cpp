@@ -217,10 +217,10 @@ TEST(HollowsToChooseFrom, AreCautionsWhereTheyMayNotBeMeant) {
         const bool is_pipe = is_in(p, {0, 0, 0}, {20, 20, 20}) && !is_in(p, {1, 1, -1}, {19, 19, 21});
         return is_pipe && !is_in(p, {10, -1, 16}, {21, 21, 21});
       });
-  EXPECT_NE(caution_of(stepped).find("not all of that lies in planes"), std::string::npos)
+  EXPECT_NE(caution_of(stepped).find("not all its lids are planar"), std::string::npos)
       << caution_of(stepped);
   const Mesh spool = revolved({{1, 0}, {15, 0}, {15, 1}, {2, 1}, {2, 29}, {15, 29}, {15, 30}, {1, 30}});
-  EXPECT_NE(caution_of(spool).find("% of what is free"), std::string::npos) << caution_of(spool);
+  EXPECT_NE(caution_of(spool).find("% of the free volume"), std::string::npos) << caution_of(spool);
 }
 
 TEST(HollowOfShell, IsThatOfShortPipesAndNotOfRings) {

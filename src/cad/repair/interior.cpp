@@ -314,7 +314,7 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
                     "plane, or move the point",
                     text_of(*point)));
   if (failure && !planes.empty()) throw *failure;
-  refuse("the solid has no void and no recognisable hollow; close the one that is meant by \"cap\", a plane");
+  refuse("the solid has no void and no hollow that can be recognised; close the one that is meant by \"cap\", a plane");
 }
 
 /// What a surface encloses on the planes' sides: the first choice of sides that leaves it closed; else the
