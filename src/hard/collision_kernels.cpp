@@ -104,7 +104,8 @@ template <int D>
     const double a = ww - s_growth * s_growth, b = dw - s * s_growth, c = dd - s * s;
     const double discriminant = b * b - a * c;
     const double root = std::sqrt(discriminant > 0 ? discriminant : 0);
-    const bool closing = b<0, apart = c> 0;
+    const bool closing = b < 0;
+    const bool apart = c > 0;
     const double numerator = closing ? (apart ? c : 0) : b + root;
     const double denominator = closing ? root - b : -a;
     const bool meets = closing ? (discriminant >= 0) | !apart : a < 0;

@@ -30,7 +30,7 @@ Part part_inside(const WallCorner<N>& a, const WallCorner<N>& b, double radius) 
   if (a.inside && b.inside) return {0, 1};
   const Vector<N> d = b.at - a.at;
   const double squared = d.squaredNorm();
-  if (!(squared > 0)) return a.inside || b.inside ? Part{0, a.inside ? 1.0 : 0.0} : Part{0, 0};
+  if (!(squared > 0)) return {0, a.inside ? 1.0 : 0.0};
   const double nearest = -a.at.dot(d) / squared;
   const double left = radius * radius - (a.at + nearest * d).squaredNorm();
   if (!a.inside && !b.inside && !(left > 0 && nearest > 0 && nearest < 1)) return {0, 0};
