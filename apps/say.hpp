@@ -13,6 +13,7 @@ std::string in_words_of_command(std::string_view message);
 /// a stream that is full or whose reader has left is passed over. `main` looks at standard output in the end.
 template <class... Args>
 void say(std::FILE* stream, fmt::format_string<Args...> words, Args&&... args) {
-  const std::string text = in_words_of_command(fmt::format(words, std::forward<Args>(args)...));
+  std::string text = fmt::format(words, std::forward<Args>(args)...);
+  if (stream == stderr) text = in_words_of_command(text);  // standard output has data, which stay as they are
   std::fwrite(text.data(), 1, text.size(), stream);
 }

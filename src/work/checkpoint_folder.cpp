@@ -28,7 +28,7 @@ constexpr const char* before_it = "before";
 constexpr const char* not_whole_yet = "new";
 /// Another number whenever what stands here is laid out in another way; what stages write is told apart by
 /// the program's version.
-constexpr char format[] = "bernal checkpoint 1\n";
+constexpr char format[] = "bernal checkpoint 2\n";
 constexpr std::size_t word = sizeof(std::uint64_t), block_bytes = std::size_t{1} << 20;
 constexpr std::size_t end_bytes = 2 * word;
 

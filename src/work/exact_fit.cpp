@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/every_dimension.hpp"
 #include "domain/dyadic.hpp"
@@ -12,11 +13,10 @@
 namespace bernal {
 namespace {
 
-/// Of an edge, what rounding and what stages leave for it; of the sum of two radii, what is looked at
-/// exactly.
-constexpr double nearly = 1e-9;
-/// Pairs of images that are looked at in a round.
-constexpr double most_pairs = 1e6;
+/// The share of an edge, and of the sum of two radii, that rounding leaves: stages work in single precision.
+constexpr double nearly = 1e-6;
+/// Pairs of images in a round, and in all rounds together.
+constexpr double most_pairs = 1e8, most_pairs_in_all = 2e9;
 constexpr int most_rounds = 200;
 
 /// Calls visit(offset) for all numbers of periods from -1 to 1 along each axis.
@@ -32,6 +32,12 @@ void for_each_image(Visit&& visit) {
   }
 }
 
+template <int D>
+double pairs_of_images(const Spheres<D>& spheres) {
+  const auto n = static_cast<double>(spheres.size());
+  return n * n * std::pow(3, D);
+}
+
 /// A sphere and the image of another that overlap, decided exactly.
 template <int D>
 struct Overlap {
@@ -39,22 +45,22 @@ struct Overlap {
   Vector<D> apart;  ///< from the image of j to i
 };
 
-/// The first of them. Precondition: centres in [0, edge).
+/// All of them. Precondition: centres in [0, edge).
 template <int D>
-std::optional<Overlap<D>> overlap_in(const Spheres<D>& spheres, const Vector<D>& edges) {
-  std::optional<Overlap<D>> found;
-  for (std::size_t i = 0; i < spheres.size() && !found; ++i)
-    for (std::size_t j = 0; j < i && !found; ++j)
+std::vector<Overlap<D>> overlaps_in(const Spheres<D>& spheres, const Vector<D>& edges) {
+  std::vector<Overlap<D>> found;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
       for_each_image<D>([&](const Vector<D>& periods) {
         const Vector<D> apart = spheres.center(i) - spheres.center(j) - periods.cwiseProduct(edges);
         const double sum = spheres.r[i] + spheres.r[j];
-        if (found || apart.norm() > (1 + nearly) * sum) return;
+        if (apart.squaredNorm() > (1 + 3 * nearly) * sum * sum) return;
         Dyadic squared;
         for (int k = 0; k < D; ++k) {
           const auto& x = spheres.x[static_cast<std::size_t>(k)];
           squared = squared + square(Dyadic(x[i]) - Dyadic(x[j]) - Dyadic(periods[k]) * Dyadic(edges[k]));
         }
-        if (squared < square(Dyadic(spheres.r[i]) + Dyadic(spheres.r[j]))) found = {i, j, apart};
+        if (squared < square(Dyadic(spheres.r[i]) + Dyadic(spheres.r[j]))) found.push_back({i, j, apart});
       });
   return found;
 }
@@ -68,16 +74,19 @@ double wrapped(double x, double edge) {
 /// Where they are, and where two overlap a little apart.
 template <int D>
 bool fits_apart(Spheres<D>& spheres, const Vector<D>& edges) {
-  for (int round = 0; round < most_rounds; ++round) {
-    const std::optional<Overlap<D>> overlap = overlap_in<D>(spheres, edges);
-    if (!overlap) return true;
-    const double distance = overlap->apart.norm(), sum = spheres.r[overlap->i] + spheres.r[overlap->j];
-    if (!(distance > 0)) return false;
-    const double rounding = 4 * std::numeric_limits<double>::epsilon() * edges.maxCoeff();
-    const Vector<D> way = (std::max(0.0, sum - distance) + rounding) / distance * overlap->apart;
-    for (int k = 0; k < D; ++k) {
-      double& x = spheres.x[static_cast<std::size_t>(k)][overlap->i];
-      x = wrapped(x + way[k], edges[k]);
+  const double rounds = std::min<double>(most_rounds, most_pairs_in_all / pairs_of_images<D>(spheres));
+  for (int round = 0; round < rounds; ++round) {
+    const std::vector<Overlap<D>> overlaps = overlaps_in<D>(spheres, edges);
+    if (overlaps.empty()) return true;
+    for (const Overlap<D>& overlap : overlaps) {
+      const double distance = overlap.apart.norm(), sum = spheres.r[overlap.i] + spheres.r[overlap.j];
+      if (!(distance > 0)) return false;
+      const double rounding = 4 * std::numeric_limits<double>::epsilon() * edges.maxCoeff();
+      const Vector<D> way = (std::max(0.0, sum - distance) + rounding) / distance * overlap.apart;
+      for (int k = 0; k < D; ++k) {
+        double& x = spheres.x[static_cast<std::size_t>(k)][overlap.i];
+        x = wrapped(x + way[k], edges[k]);
+      }
     }
   }
   return false;
@@ -102,7 +111,7 @@ bool fits_on_lattice(Spheres<D>& spheres, const Vector<D>& edges) {
       number /= cells[k];
     }
   }
-  return !overlap_in<D>(spheres, edges);
+  return overlaps_in<D>(spheres, edges).empty();
 }
 
 template <int D>
@@ -110,8 +119,7 @@ void fit_exactly_in(SpheresInBox& in_box) {
   const Vector<D> target = *in_box.task.target_edges;
   Vector<D> edges = in_box.edges;
   Spheres<D> spheres = in_box.spheres.in<D>();
-  const auto n = static_cast<double>(spheres.size());
-  if (n * n * std::pow(3, D) > most_pairs) return;
+  if (pairs_of_images<D>(spheres) > most_pairs) return;
   if (2 * std::ranges::max(spheres.r) > target.minCoeff()) return;  // by its own image
   resize_box<D>(spheres, edges, target);
   if (!fits_apart<D>(spheres, target) && !fits_on_lattice<D>(spheres, target)) return;
