@@ -1,4 +1,5 @@
 #include <cctype>
+#include <filesystem>
 #include <sys/stat.h>
 
 #include "check.hpp"
@@ -31,6 +32,15 @@ TEST(Usage, AnUnknownCommandNamesTheNearest) {
   expect_refused_in_one_line(bernal({"pak"}), {"unknown command \"pak\"; did you mean \"pack\"?"});
   expect_refused_in_one_line(bernal({"design", "maximize"}), {"\"maximize\"; did you mean \"maximise\"?"});
   expect_refused_in_one_line(bernal({"qqqqqqqq"}), {"known: \"pack\", \"verify\""});
+}
+
+// The library names options between these marks; what users call their files is not changed by that.
+TEST(Usage, MarksOfOptionsInNamesOfFilesStayInData) {
+  const Folder folder;
+  const std::string file = (folder / "\u2039unit\u203a.stl").string();
+  std::filesystem::copy_file(std::filesystem::path(BERNAL_SOURCE) / "data/meshes/hopper.stl", file);
+  const Ended inspected = bernal({"inspect", file, "--json"});
+  EXPECT_NE(inspected.out.find(file), std::string::npos) << inspected.out;
 }
 
 TEST(Usage, NumbersThatAreNoneAreRefused) {

@@ -67,5 +67,22 @@ INSTANTIATE_TEST_SUITE_P(
                       NarrowBox{"Rods", "dimension = 1", 3}),
     [](const auto& tested) { return tested.param.name; });
 
+/// The least box that a sphere fits: its own images touch it, and single precision is not enough to tell.
+TEST(NarrowBoxesOfGivenSize, OneDiameterWideAreMetExactly) {
+  struct Case {
+    std::string size;
+    double packing_fraction;
+  };
+  for (const Case& c : {Case{"[1.0, 9.0, 9.0]", 0.5}, {"[1.0, 1.0, 40.0]", 0.45}, {"[1.0, 40.0]", 0.6}})
+    for (int seed = 1; seed <= 2; ++seed) {
+      const Packing packing = run(testing::plan_of(fmt::format(
+          "seed = {}\n[container]\nkind = \"periodic\"\nsize = {}\n[spheres]\ndiameter = 1.0\n[target]\n"
+          "packing_fraction = {}\n[[stage]]\ndo = \"relax\"\n",
+          seed, c.size, c.packing_fraction)));
+      EXPECT_EQ(packing.outcome, Outcome::converged) << c.size << " " << packing.reason;
+      testing::starts::expect_certified(packing);
+    }
+}
+
 }  // namespace narrow_boxes_test
 }  // namespace bernal
