@@ -30,6 +30,13 @@ def rules():
     return allowed
 
 
+def is_linked(object_file):
+    """Whether an object is in its library: a build folder keeps objects of files that have moved."""
+    name = object_file.relative_to(BUILD / "src/CMakeFiles").parts[0].removesuffix(".dir").removesuffix("_cold")
+    library = BUILD / f"src/lib{name}.a"
+    return library.exists() and object_file.name in subprocess.check_output(["ar", "t", library], text=True).split()
+
+
 def room_of(object_file):
     """The folder below src that it was compiled from: alone, or together with others of the folder."""
     if object_file.parent.name == "Unity":
@@ -41,11 +48,9 @@ def room_of(object_file):
 def main():
     defined, used = {}, collections.defaultdict(set)
     for object_file in sorted(BUILD.glob("src/CMakeFiles/bernal_*.dir/**/*.o")):
-        if "bernal_opencascade.dir" in object_file.parts:
-            continue  # a module of its own
-        room = room_of(object_file)
-        if room is None:
-            continue  # a file that the build makes
+        room = is_linked(object_file) and room_of(object_file)
+        if not room:
+            continue  # not of a library, or of a file that the build makes
         for line in subprocess.check_output(["nm", object_file], text=True).splitlines():
             kind, name = line.split()[-2:]
             if kind in "TDBR":
