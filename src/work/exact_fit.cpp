@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "core/every_dimension.hpp"
 #include "domain/dyadic.hpp"
 #include "work/free_of_overlap.hpp"
@@ -49,12 +50,15 @@ struct Overlap {
 template <int D>
 std::vector<Overlap<D>> overlaps_in(const Spheres<D>& spheres, const Vector<D>& edges) {
   std::vector<Overlap<D>> found;
+  const Boundary<D> boundary{edges};
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vector<D> from_j = spheres.center(i) - spheres.center(j);
+      const double sum = spheres.r[i] + spheres.r[j], reach = (1 + 3 * nearly) * sum * sum;
+      if (boundary.minimum_image(from_j).squaredNorm() > reach) continue;
       for_each_image<D>([&](const Vector<D>& periods) {
-        const Vector<D> apart = spheres.center(i) - spheres.center(j) - periods.cwiseProduct(edges);
-        const double sum = spheres.r[i] + spheres.r[j];
-        if (apart.squaredNorm() > (1 + 3 * nearly) * sum * sum) return;
+        const Vector<D> apart = from_j - periods.cwiseProduct(edges);
+        if (apart.squaredNorm() > reach) return;
         Dyadic squared;
         for (int k = 0; k < D; ++k) {
           const auto& x = spheres.x[static_cast<std::size_t>(k)];
@@ -62,6 +66,7 @@ std::vector<Overlap<D>> overlaps_in(const Spheres<D>& spheres, const Vector<D>& 
         }
         if (squared < square(Dyadic(spheres.r[i]) + Dyadic(spheres.r[j]))) found.push_back({i, j, apart});
       });
+    }
   return found;
 }
 
