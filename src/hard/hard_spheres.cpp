@@ -19,29 +19,25 @@ constexpr double collisions_a_period = 16;
 /// A period after one that gained more kinetic energy than this is shorter.
 constexpr double most_heating = 0.1;
 constexpr double fastest_change_of_duration = 4;
-/// The first period in mean diameters per sphere: a few collisions in all, which hardly matter to spheres
-/// that are jammed from the start, but enough that a single collision does not look like pressure.
+/// The first period in mean diameters per sphere: a few collisions in all. One alone looks like pressure.
 constexpr double first_duration = 1;
 /// The longest period, in shortest edges at thermal speed: paths of many edges would cost digits.
 constexpr double longest_flight = 4;
 /// The largest growth of the size in a period.
 constexpr double most_growth = 0.1;
-/// Per sphere, about thirty times the usual number: a few spheres that jam within a period would collide ever
-/// faster and never reach its end.
+/// Per sphere, thirty times the usual number: a few spheres that jam within a period would never reach its
+/// end.
 constexpr std::uint64_t most_events_a_period = 400;
 /// Events between two questions whether to stop.
 constexpr std::uint64_t events_a_look = 4096;
 /// The least change of velocity in a collision, as a share of the thermal speed.
 constexpr double least_kick = 1e-14;
-/// Events in the calendar per collision: spheres whose next event is sought again, and departures from
-/// shells.
+/// Events in the calendar per collision, with renewed searches and departures from shells.
 constexpr double events_a_collision = 1.8;
-/// Above this number the caches do not hold all spheres, and what is needed in `step_ahead` events is
-/// prefetched.
+/// Above this number the caches do not hold all spheres; then data are prefetched `step_ahead` events ahead.
 constexpr std::size_t few_spheres = 3000, step_ahead = 2;
 
-/// Width of the shells in mean diameters: at first, and its limits, which do not hold for lists shorter than
-/// `short_list`.
+/// Width of the shells in mean diameters: at first, and its limits where lists are longer than `short_list`.
 constexpr double first_freedom = 0.15, least_freedom = 0.02, most_freedom = 1.0, short_list = 4;
 /// The shells are as wide as they should be while departures per collision are between these; else their
 /// width changes by a factor.
