@@ -3,6 +3,7 @@
 function that one room declares and another defines is seen by no include."""
 
 import collections
+import functools
 import pathlib
 import re
 import subprocess
@@ -30,11 +31,15 @@ def rules():
     return allowed
 
 
+@functools.cache
+def members_of(library):
+    return subprocess.check_output(["ar", "t", library], text=True).split() if library.exists() else []
+
+
 def is_linked(object_file):
     """Whether an object is in its library: a build folder keeps objects of files that have moved."""
     name = object_file.relative_to(BUILD / "src/CMakeFiles").parts[0].removesuffix(".dir").removesuffix("_cold")
-    library = BUILD / f"src/lib{name}.a"
-    return library.exists() and object_file.name in subprocess.check_output(["ar", "t", library], text=True).split()
+    return object_file.name in members_of(BUILD / f"src/lib{name}.a")
 
 
 def room_of(object_file):
