@@ -13,7 +13,8 @@ endif()
 add_library(bernal_compile_options INTERFACE)
 target_compile_features(bernal_compile_options INTERFACE cxx_std_20)
 target_compile_options(bernal_compile_options INTERFACE
-  -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  # Clang takes a name of one file for shadowed in another that is compiled together with it.
+  -Wall -Wextra $<$<CXX_COMPILER_ID:GNU>:-Wshadow> -Wnon-virtual-dtor -Woverloaded-virtual
   $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>  # which takes a file compiled together with others for a header
   -ffp-contract=off -fno-fast-math -fno-math-errno -fno-trapping-math
   # Its garbage is collected once it is large, which it seldom is: a tenth less time.
