@@ -1,14 +1,23 @@
 # Debian packages of what `cmake --install` installs, each of some of its components: bernal, libbernal-dev and, where
 # the module of Python is built, python3-bernal. cmake/package builds and makes them; tests/packages/run tries them.
+# README and all that its links lead to, in the places that they have in the source: links hold, and the commands of the
+# guide find their scenes.
 set(doc ${CMAKE_INSTALL_DATADIR}/doc)
-set(examples ${doc}/bernal/examples)
-install(FILES README.md DESTINATION ${doc}/bernal COMPONENT command)
-file(GLOB scenes CONFIGURE_DEPENDS data/scenes/*)
-install(FILES ${scenes} DESTINATION ${examples}/scenes COMPONENT command)
-file(GLOB sweeps CONFIGURE_DEPENDS data/sweeps/*)
-install(FILES ${sweeps} DESTINATION ${examples}/sweeps COMPONENT command)
-install(FILES data/meshes/lib3mf_helix.stl data/meshes/hopper.stl data/meshes/block_fillets_bore.step
-  DESTINATION ${examples}/meshes COMPONENT command)  # those of the scenes, and one with surfaces
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${doc}/bernal COMPONENT command)
+install(FILES CITATION.cff DESTINATION ${doc}/bernal COMPONENT command OPTIONAL)
+install(FILES src/README.md DESTINATION ${doc}/bernal/src COMPONENT command)
+install(DIRECTORY data DESTINATION ${doc}/bernal COMPONENT command
+  PATTERN data/guide/site EXCLUDE PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY include DESTINATION ${doc}/bernal COMPONENT command)
+install(DIRECTORY tests/bench DESTINATION ${doc}/bernal/tests COMPONENT command FILES_MATCHING PATTERN *.md)
+find_program(BERNAL_PANDOC pandoc)
+if(BERNAL_PANDOC)  # of cmake/site-packages.txt
+  install(CODE "
+    execute_process(COMMAND /usr/bin/python3 -B ${PROJECT_SOURCE_DIR}/data/guide/site/build.py
+      $<TARGET_FILE:bernal_command> ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/share/site
+      OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)" COMPONENT command)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/site DESTINATION ${doc}/bernal COMPONENT command)
+endif()
 
 find_program(BERNAL_SHLIBDEPS dpkg-shlibdeps)
 if(NOT BERNAL_SHLIBDEPS)
@@ -29,7 +38,15 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE gzip)  # xz saves a third of 12 MB and takes five times as long
+# Each Debian has packages of its own, and an upgrade of the system is one of bernal: 1~deb12 comes before 1~deb13.
+cmake_host_system_information(RESULT system QUERY DISTRIB_ID)
+cmake_host_system_information(RESULT system_version QUERY DISTRIB_VERSION_ID)
+cmake_host_system_information(RESULT codename QUERY DISTRIB_VERSION_CODENAME)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+if(system_version)
+  string(REPLACE debian deb system "${system}")
+  set(CPACK_DEBIAN_PACKAGE_RELEASE 1~${system}${system_version})
+endif()
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/debian/dependencies.cmake)
@@ -48,6 +65,7 @@ macro(bernal_package name section description)
   string(TOUPPER ${group} group)
   install(CODE "
     set(version ${version})
+    set(codename ${codename})
     include(${PROJECT_SOURCE_DIR}/cmake/debian/write_changelogs.cmake)
     write_changelogs(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${policy})" COMPONENT ${group}_POLICY EXCLUDE_FROM_ALL)
   install(FILES ${policy}/changelog.gz ${policy}/changelog.Debian.gz ${PROJECT_SOURCE_DIR}/cmake/debian/copyright
@@ -98,8 +116,12 @@ need the package bernal where they run."
 
 get_cmake_property(components COMPONENTS)
 if(python IN_LIST components)
+  get_property(bernal_python GLOBAL PROPERTY bernal_python)
+  string(REGEX MATCH "[0-9]+$" minor ${bernal_python})
+  math(EXPR minor "${minor} + 1")
+  string(REGEX REPLACE "[0-9]+$" ${minor} bernal_next_python ${bernal_python})
   set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_SHLIBDEPS ON)
-  set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_DEPENDS "python3 (>= ${bernal_python}), python3 (<< ${bernal_next_python}), python3-numpy")
   set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_RECOMMENDS "bernal (= ${version})")
   set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_CONTROL_EXTRA
     ${CMAKE_CURRENT_LIST_DIR}/debian/python/postinst ${CMAKE_CURRENT_LIST_DIR}/debian/python/prerm)
