@@ -74,7 +74,9 @@ make_root() {
   cp --dereference /etc/resolv.conf "$root/etc/resolv.conf" &&
     mount -t proc proc "$root/proc" &&
     mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts" &&
-    ln -sf pts/ptmx "$root/dev/ptmx"
+    ln -sf pts/ptmx "$root/dev/ptmx" || return
+  # Of what was kept, the lists of packages may be old. As debootstrap, it does not ask how old those of the mirror are.
+  [[ -z "$kept" ]] || apt_in "$1" -o Acquire::Check-Valid-Until=false update
 }
 
 # What is in both: no variable of this machine, and what comes after the root.
