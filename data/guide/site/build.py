@@ -47,12 +47,12 @@ SECTIONS = [
                    ("reference/python", None, "Python module"), ("reference/scenes", None, "Example scenes")]),
     ("Results", [("results/reaches", "data/guide/reaches.md", "What it reaches")] +
      [(f"results/{name}", f"data/results/{name}.md", title) for name, title in (
-         ("methods", "Methods, priced"), ("effects", "Effects, one by one"), ("arithmetic", "The arithmetic, priced"),
+         ("methods", "What each method costs"), ("effects", "Effects, one by one"), ("arithmetic", "What each level of arithmetic costs"),
          ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("beds", "Beds in columns"), ("poured", "Beds with friction"),
          ("containers", "Many spheres in CAD parts"),
          ("large", "Large packings"), ("lists", "Lists and arrays"),
          ("engines", "Engines over MPI"), ("scale", "How relaxation scales"), ("gpu", "Relaxation on a GPU"), ("packers", "Against public packers"),
-         ("hard", "Hard cases"), ("starts", "Packings of others"))] +
+         ("hard", "Hard cases"), ("starts", "Packings of others"), ("earlier", "Earlier measurements"))] +
      [(f"results/{name}", f"data/results/papers/{name}/{name}.md", title) for name, title in (
          ("zhao2007", "Zhao et al. 2007"), ("han2005", "Han et al. 2005"), ("farr2013", "Farr 2013"))] +
      [("results/timings", "tests/bench/RESULTS.md", "All timings"),
