@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
                         import_command(), predict_command(), design_command(), map_command()}};
     command.commands.push_back(completion_command(command));
     command.commands.push_back(manual_command(command));
-    status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
+    status = run_command_line(argc, argv, command, "bernal " + bernal::text_of(bernal::this_program()));
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;
     return complain(std::ferror(stdout) != 0 ? "standard output cannot be written" : error.what());

@@ -12,6 +12,7 @@
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 #include "bernal/scene/scene.hpp"
+#include "bernal/version.hpp"
 
 namespace bernal {
 
@@ -67,7 +68,7 @@ struct CheckpointOptions {
   /// Seconds between two, at least; more where writing takes more than a fiftieth of the time. One more is
   /// written when the monitor says stop.
   double every = 60;
-  /// Goes on from the latest of the same scene, seed and version, if there is one.
+  /// Goes on from the latest of the same scene, seed and packings number, if there is one.
   bool resume = false;
   /// Told in a sentence what people should know at once: that it goes on, or starts anew, or cannot write.
   std::function<void(const std::string&)> tell = {};
@@ -94,7 +95,7 @@ struct Packing {
   Scene scene;
   std::uint64_t seed = 1;
   int threads = 1;
-  std::string version;
+  Program program;  ///< that made it
   Outcome outcome = Outcome::converged;
   std::string reason;  ///< one sentence behind the outcome
   std::vector<Effect> effects;
