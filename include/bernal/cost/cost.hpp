@@ -84,7 +84,7 @@ struct CostReport {
 };
 
 /// Runs a scene with other values of the keys that buy accuracy in its stages, its accuracy and its container
-/// (`schema::Key::ladder`), and says what each costs and buys.
+/// and says what each costs and buys.
 ///
 /// First the scene as it is, then one key after the other a step at a time, away from the scene's value, then
 /// combinations of those that made a difference, near the front that has been found, until the time is over

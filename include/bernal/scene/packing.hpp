@@ -35,7 +35,7 @@ struct PlanItem {
   std::string what;  ///< one phrase
   std::string cost;  ///< "O(N)", "O(N log T)", …
   /// What it is expected to cost a run on one thread, by the stages' own models: three times in four within a
-  /// factor of two, see tests/bench/estimates_table. 0 where that is nothing or `if_needed`.
+  /// factor of two. 0 where that is nothing or `if_needed`.
   double seconds = 0, bytes = 0;
   bool part = false;       ///< its seconds are among those of another line, as in `Packing::effects`
   bool if_needed = false;  ///< it runs only where the others do not reach what is asked for
