@@ -55,9 +55,9 @@ SECTIONS = [
          ("hard", "Hard cases"), ("starts", "Packings of others"))] +
      [(f"results/{name}", f"data/results/papers/{name}/{name}.md", title) for name, title in (
          ("zhao2007", "Zhao et al. 2007"), ("han2005", "Han et al. 2005"), ("farr2013", "Farr 2013"))] +
-     [("results/timings", "tests/bench/RESULTS.md", "All timings"),
-      ("results/relaxation", "tests/bench/RELAXATION.md", "Relaxation against the paper"),
-      ("results/estimates", "tests/bench/ESTIMATES.md", "Estimates of explain")]),
+     [("results/timings", "data/results/timings.md", "All timings"),
+      ("results/relaxation", "data/results/relaxation.md", "Relaxation against the paper"),
+      ("results/estimates", "data/results/estimates.md", "Estimates of explain")]),
     ("The project", [("project/readme", "README.md", "README"), ("project/map", "src/README.md", "The map of the code"),
                      ("project/contributing", "CONTRIBUTING.md", "Working on bernal"),
                      ("project/changelog", "CHANGELOG.md", "Changelog"),
