@@ -39,9 +39,11 @@ SECTIONS = [
         ("checkpoints", "Runs that are ended and go on"),
         ("python", "From Python"))]),
     ("To know more", [(f"guide/{name}", f"data/guide/{name}.md", title) for name, title in (
-        ("scene", "The scene file"), ("certificate", "What the certificate means"), ("files", "The files of a result"),
+        ("commands", "Commands and exit codes"), ("scene", "The scene file"),
+        ("certificate", "What the certificate means"), ("files", "The files of a result"),
         ("formats", "Formats of other programs"), ("import", "From other programs"),
-        ("exchange", "Exchange of sizes"), ("wide_sizes", "Wide sizes"), ("library", "As a C++ library"))]),
+        ("exchange", "Exchange of sizes"), ("wide_sizes", "Wide sizes"), ("library", "As a C++ library"),
+        ("citing", "How to cite, and sources"))]),
     ("Reference", [("reference/scene", None, "Every key of a scene"), ("reference/commands", None, "Every command"),
                    ("reference/report", None, "report.json and --json"), ("reference/cpp", None, "C++ headers"),
                    ("reference/python", None, "Python module"), ("reference/scenes", None, "Example scenes")]),
