@@ -31,10 +31,13 @@ Explanation explanation() {
       .text =
           "Messages go to standard error, results to files or standard output. Ctrl-C ends a run at the next "
           "safe point, with a valid result of what is there.",
-      .lists = {{.title = "Files",
-                 .text = {},
-                 .entries = {{"/usr/share/doc/bernal/examples",
-                              "scenes and CAD parts to begin with, where the Debian package is installed"}}}},
+      .lists =
+          {{.title = "Files",
+            .text = {},
+            .entries =
+                {{"/usr/share/doc/bernal",
+                  "the guide (site/index.html), and in data scenes and CAD parts to begin with, where the "
+                  "Debian package is installed"}}}},
       .examples = {{"bernal pack data/scenes/cylinder_han.toml -o out", "fill a cylinder; results in out/"},
                    {"bernal pack bracket.stl --unit mm --diameter 2",
                     "fill a CAD part, without a scene; results in bracket/"},

@@ -83,11 +83,14 @@ def help_of(command, *arguments):
                           env={"PATH": "/usr/bin:/bin", "COLUMNS": "110"}).stdout
 
 
-def commands(command):
+def names_of_commands(command):
+    listed = help_of(command).partition("Subcommands:\n")[2].partition("\n\n")[0]
+    return re.findall(r"^  ([a-z]+) {2,}", listed, flags=re.M)
+
+
+def commands(command, names):
     """HTML of --help, of the command and of each subcommand."""
-    whole = help_of(command)
-    names = re.findall(r"^  ([a-z]+) {2,}", whole[whole.index("ubcommands"):], flags=re.M)
-    parts = ["<h1>Every command</h1>", f"<pre><code>{escaped(whole.strip())}</code></pre>"]
+    parts = ["<h1>Every command</h1>", f"<pre><code>{escaped(help_of(command).strip())}</code></pre>"]
     for name in names:
         parts.append(f'<h2 id="{name}">bernal {name}</h2>')
         parts.append(f"<pre><code>{escaped(help_of(command, name).strip())}</code></pre>")
