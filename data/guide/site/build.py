@@ -88,7 +88,9 @@ def html_of_markdown(text):
     body = pandoc(text)
     body = re.sub(r"<table>.*?</table>", lambda m: f'<div class="wide">{m[0]}</div>', body, flags=re.S)
     body = re.sub(r"<colgroup>.*?</colgroup>", "", body, flags=re.S)
-    return re.sub(r' style="[^"]*"', "", body)
+    body = body.replace(' style="text-align: right;"', ' class="number"')
+    body = re.sub(r' style="[^"]*"', "", body)
+    return re.sub(r"<table>.*?</table>", lambda m: tables.stacked(m[0]), body, flags=re.S)
 
 
 class Site:
@@ -124,12 +126,12 @@ class Site:
         return up + "files/" + urllib.parse.quote(name)
 
     def with_links(self, body, source, address):
-        """Links of the source as those of the site; headers that are named as they are included are links too."""
-        up = "../" * address.count("/")
-        body = re.sub(r"<code>&lt;(bernal/\w+/\w+\.hpp)&gt;</code>",
-                      lambda m: f'<a href="{up}{self.of_file[f"include/{m[1]}"]}.html">{m[0]}</a>', body)
-        return re.sub(r'(<(?:a|img)\b[^>]*?\b(?:href|src))="([^"]*)"',
+        """Links of the source as those of the site; headers that are named as they are included become links too."""
+        body = re.sub(r'(<(?:a|img)\b[^>]*?\b(?:href|src))="([^"]*)"',
                       lambda m: f'{m[1]}="{html.escape(self.link(html.unescape(m[2]), source, address))}"', body)
+        up = "../" * address.count("/")
+        return re.sub(r"<code>&lt;(bernal/\w+/\w+\.hpp)&gt;</code>",
+                      lambda m: f'<a href="{up}{self.of_file[f"include/{m[1]}"]}.html">{m[0]}</a>', body)
 
     def add(self, address, title, body, source="README.md"):
         self.pages[address] = (title, self.with_links(body, source, address), source)
