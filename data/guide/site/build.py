@@ -90,6 +90,7 @@ def html_of_markdown(text):
     body = re.sub(r"<colgroup>.*?</colgroup>", "", body, flags=re.S)
     body = body.replace(' style="text-align: right;"', ' class="number"')
     body = re.sub(r' style="[^"]*"', "", body)
+    body = re.sub(r'(?<=<td class="number">).*?(?=</td>)', lambda m: re.sub(r"(?<=\d) (?=[a-zµ]+\b)", "\u00a0", m[0]), body)
     return re.sub(r"<table>.*?</table>", lambda m: tables.stacked(m[0]), body, flags=re.S)
 
 
