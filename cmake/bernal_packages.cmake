@@ -1,14 +1,29 @@
 # Debian packages of what `cmake --install` installs, each of some of its components: bernal, libbernal-dev and, where
 # the module of Python is built, python3-bernal. cmake/package builds and makes them; tests/packages/run tries them.
 set(doc ${CMAKE_INSTALL_DATADIR}/doc)
-set(examples ${doc}/bernal/examples)
+
+# README, the guide and what they link lie below doc as they lie in the source, so that every link holds and every
+# command of the guide works where "data" is; and the site, if pandoc of cmake/site-packages.txt is there.
 install(FILES README.md DESTINATION ${doc}/bernal COMPONENT command)
-file(GLOB scenes CONFIGURE_DEPENDS data/scenes/*)
-install(FILES ${scenes} DESTINATION ${examples}/scenes COMPONENT command)
-file(GLOB sweeps CONFIGURE_DEPENDS data/sweeps/*)
-install(FILES ${sweeps} DESTINATION ${examples}/sweeps COMPONENT command)
-install(FILES data/meshes/lib3mf_helix.stl data/meshes/hopper.stl data/meshes/block_fillets_bore.step
-  DESTINATION ${examples}/meshes COMPONENT command)  # those of the scenes, and one with surfaces
+install(FILES CITATION.cff DESTINATION ${doc}/bernal COMPONENT command OPTIONAL)
+install(DIRECTORY data DESTINATION ${doc}/bernal COMPONENT command
+  REGEX "/data/guide/site$" EXCLUDE PATTERN __pycache__ EXCLUDE)
+find_program(BERNAL_PANDOC pandoc)
+if(BERNAL_PANDOC AND NOT BERNAL_SANITIZE)
+  file(GLOB_RECURSE pages CONFIGURE_DEPENDS data/* include/*.hpp)
+  list(FILTER pages EXCLUDE REGEX "__pycache__")
+  set(module)
+  if(TARGET bernal_python_package)
+    set(module bernal_python_package)  # whose stubs are pages
+  endif()
+  add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/site/index.html
+    COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 data/guide/site/build.py
+      $<TARGET_FILE:bernal_command> . ${PROJECT_BINARY_DIR}/site
+    DEPENDS bernal_command ${module} ${pages} README.md CONTRIBUTING.md CHANGELOG.md src/README.md
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM COMMENT "Making the site")
+  add_custom_target(bernal_site ALL DEPENDS ${PROJECT_BINARY_DIR}/site/index.html)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/site DESTINATION ${doc}/bernal COMPONENT command OPTIONAL)
+endif()
 
 find_program(BERNAL_SHLIBDEPS dpkg-shlibdeps)
 if(NOT BERNAL_SHLIBDEPS)
