@@ -1,0 +1,93 @@
+# Bare roots of Debian for scripts that source this file. Root only; debootstrap makes them from the mirror that this
+# machine's apt uses.
+#
+#   why="$(why_no_roots)" || …           # says what is missing, where it is no machine for this
+#   with_own_mounts "$@"                 # starts the script again, in a namespace of mounts that ends with it
+#   make_root user bookworm              # $work/user; $work goes in the end, with all roots in it
+#   in_root user bernal --version        # as root, with nothing of this environment
+#   as_user user bernal --version        # as a user who owns a home and nothing else
+#   apt_in user install zsh
+#
+# BERNAL_ROOTS names a folder that keeps what debootstrap has made, as SUITE.tar: the next root of that suite is
+# unpacked from there. Whoever wants the Debian of today removes these files.
+why_no_roots() {
+  ((EUID == 0)) || { echo "only root may make roots"; return 1; }
+  local program
+  for program in debootstrap unshare; do
+    command -v "$program" >/dev/null || { echo "$program is not installed"; return 1; }
+  done
+  [[ -n "$(debian_mirror)" ]] || { echo "apt has no source of Debian"; return 1; }
+}
+
+# One mirror has every suite. Of security updates it has none: those of old stable releases come by point releases.
+debian_mirror() {
+  apt-get indextargets --format '$(REPO_URI) $(LABEL)' 'Created-By: Packages' 2>/dev/null |
+    awk '$2 == "Debian" { print $1; exit }'
+}
+
+with_own_mounts() {
+  if [[ "${BERNAL_OWN_MOUNTS:-}" != "$0" ]]; then
+    exec env BERNAL_OWN_MOUNTS="$0" unshare --mount --propagation private "$0" "$@"
+  fi
+  work="$(mktemp -d "${TMPDIR:-/tmp}/bernal.XXXXXX")"
+  chmod 755 "$work"
+  trap remove_roots EXIT
+  trap 'exit 1' INT TERM HUP
+  export LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive
+}
+
+remove_roots() {
+  local mounted
+  while read -r _ _ _ _ mounted _; do
+    [[ "$mounted" != "$work"/* ]] || umount --lazy "$mounted" 2>/dev/null || true
+  done </proc/self/mountinfo
+  rm -rf --one-file-system "$work"
+}
+
+make_root() {
+  local root="$work/$1" suite="$2" kept="${BERNAL_ROOTS:+$BERNAL_ROOTS/$2.tar}"
+  mkdir -p "$root"
+  if [[ -n "$kept" && -e "$kept" ]]; then
+    tar --extract --numeric-owner --file "$kept" --directory "$root" || return
+  else
+    debootstrap --variant=minbase "$suite" "$root" "$(debian_mirror)" || return
+    rm -f "$root"/var/cache/apt/archives/*.deb
+    if [[ -n "$kept" ]]; then  # whole at once: others may be reading
+      mkdir -p "$BERNAL_ROOTS"
+      tar --create --numeric-owner --one-file-system --file "$kept.$$" --directory "$root" . && mv "$kept.$$" "$kept" ||
+        return
+    fi
+  fi
+  local kind proxy
+  for kind in http https; do
+    proxy="$(apt-config dump --format '%v%n' "Acquire::$kind::Proxy")"
+    [[ -z "$proxy" ]] || echo "Acquire::$kind::Proxy \"$proxy\";" >>"$root/etc/apt/apt.conf.d/90proxy"
+  done
+  cp --dereference /etc/resolv.conf "$root/etc/resolv.conf" &&
+    mount -t proc proc "$root/proc" &&
+    mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts" &&
+    ln -sf pts/ptmx "$root/dev/ptmx"
+}
+
+# What is in both: no variable of this machine, and what comes after the root.
+inside=(env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 TERM=dumb
+  DEBIAN_FRONTEND=noninteractive)
+
+in_root() {
+  local root="$work/$1"
+  shift
+  "${inside[@]}" HOME=/root chroot "$root" "$@"
+}
+
+as_user() {
+  local root="$work/$1"
+  shift
+  [[ -d "$root/home/user" ]] || "${inside[@]}" chroot "$root" useradd --create-home --uid 1000 user || return
+  "${inside[@]}" HOME=/home/user USER=user chroot --userspec=1000:1000 --groups= "$root" "$@"
+}
+
+apt_in() {
+  local root="$1"
+  shift
+  in_root "$root" apt-get --yes --quiet=2 "$@" </dev/null
+}
