@@ -1,3 +1,13 @@
+# The oldest compilers that know enough of C++20: those of Debian 12.
+set(bernal_oldest_GNU 12)
+set(bernal_oldest_Clang 16)
+set(bernal_oldest ${bernal_oldest_${CMAKE_CXX_COMPILER_ID}})
+if(bernal_oldest AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS bernal_oldest)
+  message(FATAL_ERROR
+    "bernal needs GCC ${bernal_oldest_GNU} or Clang ${bernal_oldest_Clang} or later, and ${CMAKE_CXX_COMPILER} is "
+    "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}: name another in CXX, for a new build folder")
+endif()
+
 # What every target of this project is compiled with. One seed gives one packing on every x86-64
 # machine, so nothing here may let the compiler contract, reorder or approximate floating point.
 add_library(bernal_compile_options INTERFACE)

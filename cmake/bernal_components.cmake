@@ -4,7 +4,7 @@
 # besides are listed in cmake/debian-packages.txt.
 set(bernal_components core predict verify cad measure bernal studies)
 
-set(bernal_core_packages "Eigen3 3.4 NO_MODULE" "Boost 1.74" "TBB" "fmt 9")
+set(bernal_core_packages "Eigen3 3.4 NO_MODULE" "Boost 1.74" "TBB 2021" "fmt 9")
 set(bernal_core_debian_packages libeigen3-dev libboost-dev libtbb-dev libfmt-dev libmd-dev)
 set(bernal_predict_stands_on core)
 set(bernal_predict_packages "NLopt 2.7")
@@ -21,6 +21,25 @@ if(BERNAL_CUDA)
 endif()
 set(bernal_bernal_debian_packages libtomlplusplus-dev libminizip-dev zlib1g-dev)
 set(bernal_studies_stands_on bernal)
+
+# find_package() of one of these packages; `why` then is empty, or says in one line what is missing. Authors call a new
+# major version incompatible whether it is or not: it is taken where there is no other. tests/systems tries the newest.
+macro(bernal_find why package)
+  set(${why} "")
+  string(REPLACE " " ";" _bernal_words "${package}")
+  find_package(${_bernal_words} QUIET)
+  list(POP_FRONT _bernal_words _bernal_name _bernal_version)
+  if(NOT ${_bernal_name}_FOUND)
+    set(_bernal_versions ${${_bernal_name}_CONSIDERED_VERSIONS})
+    find_package(${_bernal_name} ${_bernal_words} QUIET)
+    if(NOT ${_bernal_name}_FOUND OR ${_bernal_name}_VERSION VERSION_LESS _bernal_version)
+      list(JOIN _bernal_versions ", " _bernal_versions)
+      set(${why} "bernal needs ${_bernal_name} ${_bernal_version} or later, and found ${_bernal_versions}: install it as \
+cmake/install-debian-packages does, or say in ${_bernal_name}_DIR where it is")
+      string(REPLACE "found :" "found none:" ${why} "${${why}}")
+    endif()
+  endif()
+endmacro()
 
 # The components given and all that they stand on, in the order above.
 function(bernal_with_foundations result)

@@ -15,8 +15,10 @@ endif()
 
 foreach(component IN LISTS bernal_built)
   foreach(package IN LISTS bernal_${component}_packages)
-    separate_arguments(package)
-    find_package(${package} REQUIRED)
+    bernal_find(why "${package}")
+    if(why)
+      message(FATAL_ERROR "${why}")
+    endif()
   endforeach()
 endforeach()
 

@@ -1,22 +1,28 @@
 # Debian packages of what `cmake --install` installs, each of some of its components: bernal, libbernal-dev and, where
 # the module of Python is built, python3-bernal. cmake/package builds and makes them; tests/packages/run tries them.
-# README and all that its links lead to, in the places that they have in the source: links hold, and the commands of the
-# guide find their scenes.
 set(doc ${CMAKE_INSTALL_DATADIR}/doc)
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${doc}/bernal COMPONENT command)
+
+# README, the guide and what they link lie below doc as they lie in the source, so that every link holds and every
+# command of the guide works where "data" is; and the site, if pandoc of cmake/site-packages.txt is there.
+install(FILES README.md DESTINATION ${doc}/bernal COMPONENT command)
 install(FILES CITATION.cff DESTINATION ${doc}/bernal COMPONENT command OPTIONAL)
-install(FILES src/README.md DESTINATION ${doc}/bernal/src COMPONENT command)
 install(DIRECTORY data DESTINATION ${doc}/bernal COMPONENT command
-  PATTERN data/guide/site EXCLUDE PATTERN __pycache__ EXCLUDE)
-install(DIRECTORY include DESTINATION ${doc}/bernal COMPONENT command)
-install(DIRECTORY tests/bench DESTINATION ${doc}/bernal/tests COMPONENT command FILES_MATCHING PATTERN *.md)
+  REGEX "/data/guide/site$" EXCLUDE PATTERN __pycache__ EXCLUDE)
 find_program(BERNAL_PANDOC pandoc)
-if(BERNAL_PANDOC)  # of cmake/site-packages.txt
-  install(CODE "
-    execute_process(COMMAND /usr/bin/python3 -B ${PROJECT_SOURCE_DIR}/data/guide/site/build.py
-      $<TARGET_FILE:bernal_command> ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/share/site
-      OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)" COMPONENT command)
-  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/site DESTINATION ${doc}/bernal COMPONENT command)
+if(BERNAL_PANDOC AND NOT BERNAL_SANITIZE)
+  file(GLOB_RECURSE pages CONFIGURE_DEPENDS data/* include/*.hpp)
+  list(FILTER pages EXCLUDE REGEX "__pycache__")
+  set(module)
+  if(TARGET bernal_python_package)
+    set(module bernal_python_package)  # whose stubs are pages
+  endif()
+  add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/site/index.html
+    COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 data/guide/site/build.py
+      $<TARGET_FILE:bernal_command> . ${PROJECT_BINARY_DIR}/site
+    DEPENDS bernal_command ${module} ${pages} README.md CONTRIBUTING.md CHANGELOG.md src/README.md
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM COMMENT "Making the site")
+  add_custom_target(bernal_site ALL DEPENDS ${PROJECT_BINARY_DIR}/site/index.html)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/site DESTINATION ${doc}/bernal COMPONENT command OPTIONAL)
 endif()
 
 find_program(BERNAL_SHLIBDEPS dpkg-shlibdeps)

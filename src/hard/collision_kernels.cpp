@@ -6,9 +6,13 @@
 #include <limits>
 #include <vector>
 
+#include "core/instruction_sets.hpp"
+
 // GCC 12 takes the "undefined" operands in its own avx512 headers for uninitialised variables.
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
+#endif
 // The types of the wider instruction sets never cross a call that is not inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -41,8 +45,7 @@ struct OneByOne {
 
 /// The same in three dimensions, where a sphere is eight numbers, of which nobody reads the last here: eight
 /// spheres are transposed in registers.
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
+BERNAL_BEGIN_TARGET(BERNAL_AVX512)
 struct EightByEight {
   [[gnu::always_inline]] static inline void gather(const CollisionScan<3>& task, std::size_t padded) {
     static_assert(sizeof(FlyingSphere<3>) == 8 * sizeof(double));
@@ -71,7 +74,7 @@ struct EightByEight {
     }
   }
 };
-#pragma GCC pop_options
+BERNAL_END_TARGET
 
 /// Of the gathered columns.
 template <int D>
@@ -87,7 +90,7 @@ template <int D>
     edges[k] = task.edges[k], inverse_edges[k] = task.inverse_edges[k];
     place[k] = self.x0[k] + self.v[k] * now;
   }
-#pragma GCC ivdep
+  BERNAL_INDEPENDENT_ROUNDS
   for (std::size_t m = 0; m < padded; ++m) {
     const double radii = self.r + columns[2 * D * stride + m];
     const double s = radii * size, s_growth = radii * growth;
@@ -138,7 +141,7 @@ std::size_t padded_count(const CollisionScan<D>& task) {
 }
 
 template <int D>
-[[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]] FirstCollision scan_avx512(
+[[gnu::target(BERNAL_AVX512)]] FirstCollision scan_avx512(
     const CollisionScan<D>& task) {
   if (task.count == 0) return {never, 0};
   if constexpr (D == 3) {

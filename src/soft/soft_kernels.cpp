@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/instruction_sets.hpp"
 #include "soft/soft_walls.hpp"
 
 #define BERNAL_INLINE inline __attribute__((always_inline))
@@ -16,8 +17,10 @@
 // The types of the wider instruction sets never cross a call that is not inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
 // GCC 12 takes the "undefined" operands in its own avx512 headers for uninitialised variables.
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
+#endif
 
 namespace bernal {
 namespace {
@@ -46,23 +49,21 @@ namespace sse2 {
 #include "soft/soft_kernels_body.hpp"
 }
 
-#pragma GCC push_options
-#pragma GCC target("avx2,popcnt")
-#define BERNAL_AVX2
+BERNAL_BEGIN_TARGET("avx2,popcnt")
+#define BERNAL_EIGHT_LANES
 namespace avx2 {
 #include "soft/soft_kernels_body.hpp"
 }
-#undef BERNAL_AVX2
-#pragma GCC pop_options
+#undef BERNAL_EIGHT_LANES
+BERNAL_END_TARGET
 
-#pragma GCC push_options
-#pragma GCC target("avx2,popcnt,avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
-#define BERNAL_AVX512
+BERNAL_BEGIN_TARGET("avx2,popcnt," BERNAL_AVX512)
+#define BERNAL_SIXTEEN_LANES
 namespace avx512 {
 #include "soft/soft_kernels_body.hpp"
 }
-#undef BERNAL_AVX512
-#pragma GCC pop_options
+#undef BERNAL_SIXTEEN_LANES
+BERNAL_END_TARGET
 
 std::vector<SoftKernels> runnable_kernels() {
   std::vector<SoftKernels> kernels;

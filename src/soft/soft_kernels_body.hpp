@@ -2,9 +2,9 @@
 // once for each and in a namespace of its own (hence no include guard). `width` numbers are worked on at
 // once; what depends on the instruction set stands in the first half, the loops in the second.
 
-#if defined(BERNAL_AVX512)
+#if defined(BERNAL_SIXTEEN_LANES)
 constexpr int width = 16;
-#elif defined(BERNAL_AVX2)
+#elif defined(BERNAL_EIGHT_LANES)
 constexpr int width = 8;
 #else
 constexpr int width = 4;
@@ -21,7 +21,7 @@ struct Columns {
   Floats r;
 };
 
-#if defined(BERNAL_AVX512)
+#if defined(BERNAL_SIXTEEN_LANES)
 
 /// Spheres *at(k), *at(k + 4), …, as many as there is room for.
 template <class At>
@@ -49,7 +49,7 @@ BERNAL_INLINE std::uint32_t* append(std::uint32_t* out, const std::uint32_t* fro
   return out + __builtin_popcount(mask);
 }
 
-#elif defined(BERNAL_AVX2)
+#elif defined(BERNAL_EIGHT_LANES)
 
 template <class At>
 BERNAL_INLINE Ints every_fourth(At at, int k) {
@@ -99,7 +99,7 @@ BERNAL_INLINE Floats to_floats(Ints v) { return __builtin_convertvector(v, Float
 /// Of every four numbers of a and b two each from the one at `first` on, by turns.
 template <int first, int... k>
 BERNAL_INLINE Ints by_turns(Ints a, Ints b, std::integer_sequence<int, k...>) {
-  return __builtin_shuffle(a, b, Ints{(k / 4 * 4 + first + k % 4 / 2 + k % 2 * width)...});
+  return __builtin_shufflevector(a, b, (k / 4 * 4 + first + k % 4 / 2 + k % 2 * width)...);
 }
 
 /// Four registers of spheres, transposed: x, y, z and r of all, or these back to spheres.
