@@ -25,6 +25,9 @@ class BuildWithCMake(build_ext):
             cmake("--install", "build/release", "--component", "python", "--prefix", prefix)
             package = next(Path(prefix).glob("lib/python*/dist-packages/bernal"))
             shutil.copytree(package, Path(self.build_lib) / "bernal", dirs_exist_ok=True)
+        for module in (ROOT / "build/release/src").glob("libbernal_opencascade.so"):  # what reads STEP, IGES and BREP
+            (Path(self.build_lib) / "bernal/lib").mkdir(exist_ok=True)
+            shutil.copy(module, Path(self.build_lib) / "bernal/lib")
 
 
 setup(version=VERSION, ext_modules=[Extension("bernal._core", [])], cmdclass={"build_ext": BuildWithCMake})

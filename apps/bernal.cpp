@@ -31,10 +31,13 @@ Explanation explanation() {
       .text =
           "Messages go to standard error, results to files or standard output. Ctrl-C ends a run at the next "
           "safe point, with a valid result of what is there.",
-      .lists = {{.title = "Files",
-                 .text = {},
-                 .entries = {{"/usr/share/doc/bernal/examples",
-                              "scenes and CAD parts to begin with, where the Debian package is installed"}}}},
+      .lists =
+          {{.title = "Files",
+            .text = {},
+            .entries =
+                {{"/usr/share/doc/bernal",
+                  "the guide (site/index.html), and in data scenes and CAD parts to begin with, where the "
+                  "Debian package is installed"}}}},
       .examples = {{"bernal pack data/scenes/cylinder_han.toml -o out", "fill a cylinder; results in out/"},
                    {"bernal pack bracket.stl --unit mm --diameter 2",
                     "fill a CAD part, without a scene; results in bracket/"},
@@ -98,7 +101,7 @@ int main(int argc, char** argv) {
                         import_command(), predict_command(), design_command(), map_command()}};
     command.commands.push_back(completion_command(command));
     command.commands.push_back(manual_command(command));
-    status = run_command_line(argc, argv, command, "bernal " + std::string(bernal::version()));
+    status = run_command_line(argc, argv, command, "bernal " + bernal::text_of(bernal::this_program()));
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::broken_pipe && reader_has_left()) return status;
     return complain(std::ferror(stdout) != 0 ? "standard output cannot be written" : error.what());

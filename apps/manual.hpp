@@ -11,5 +11,5 @@ struct Page {
 };
 
 /// One page for the command and for each of its commands, made of the same data as --help. `version` is
-/// "bernal 0.1.0", `day` "2025-01-31". Pure ASCII; the same arguments give the same pages.
+/// "bernal 0.2.0", `day` "2025-01-31". Pure ASCII; the same arguments give the same pages.
 std::vector<Page> manual_pages(const Command& bernal, const std::string& version, const std::string& day);

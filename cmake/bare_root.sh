@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Bare roots of Debian for scripts that source this file. Root only; debootstrap makes them from the mirror that this
 # machine's apt uses.
 #
@@ -36,12 +37,18 @@ with_own_mounts() {
   export LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive
 }
 
+# What was mounted there may be a folder of others, and on the same file system: nothing is removed before it is gone.
 remove_roots() {
-  local mounted
-  while read -r _ _ _ _ mounted _; do
-    [[ "$mounted" != "$work"/* ]] || umount --lazy "$mounted" 2>/dev/null || true
-  done </proc/self/mountinfo
-  rm -rf --one-file-system "$work"
+  local each mounted
+  mapfile -t mounted < <(awk -v below="$work/" 'index($5, below) == 1 { print $5 }' /proc/self/mountinfo | tac)
+  for each in "${mounted[@]}"; do
+    umount --lazy "$(printf %b "$each")"  # a blank is \040 there
+  done
+  if grep --quiet --fixed-strings " $work/" /proc/self/mountinfo; then
+    echo "$work is left: something is mounted there" >&2
+  else
+    rm -rf --one-file-system "$work"
+  fi
 }
 
 make_root() {
@@ -58,6 +65,7 @@ make_root() {
         return
     fi
   fi
+  echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/unsafe-io"  # no root outlives a power cut
   local kind proxy
   for kind in http https; do
     proxy="$(apt-config dump --format '%v%n' "Acquire::$kind::Proxy")"
@@ -66,7 +74,9 @@ make_root() {
   cp --dereference /etc/resolv.conf "$root/etc/resolv.conf" &&
     mount -t proc proc "$root/proc" &&
     mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts" &&
-    ln -sf pts/ptmx "$root/dev/ptmx"
+    ln -sf pts/ptmx "$root/dev/ptmx" || return
+  # Of what was kept, the lists of packages may be old. As debootstrap, it does not ask how old those of the mirror are.
+  [[ -z "$kept" ]] || apt_in "$1" -o Acquire::Check-Valid-Until=false update
 }
 
 # What is in both: no variable of this machine, and what comes after the root.

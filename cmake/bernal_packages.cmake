@@ -1,14 +1,29 @@
 # Debian packages of what `cmake --install` installs, each of some of its components: bernal, libbernal-dev and, where
 # the module of Python is built, python3-bernal. cmake/package builds and makes them; tests/packages/run tries them.
 set(doc ${CMAKE_INSTALL_DATADIR}/doc)
-set(examples ${doc}/bernal/examples)
+
+# README, the guide and what they link lie below doc as they lie in the source, so that every link holds and every
+# command of the guide works where "data" is; and the site, if pandoc of cmake/site-packages.txt is there.
 install(FILES README.md DESTINATION ${doc}/bernal COMPONENT command)
-file(GLOB scenes CONFIGURE_DEPENDS data/scenes/*)
-install(FILES ${scenes} DESTINATION ${examples}/scenes COMPONENT command)
-file(GLOB sweeps CONFIGURE_DEPENDS data/sweeps/*)
-install(FILES ${sweeps} DESTINATION ${examples}/sweeps COMPONENT command)
-install(FILES data/meshes/lib3mf_helix.stl data/meshes/hopper.stl data/meshes/block_fillets_bore.step
-  DESTINATION ${examples}/meshes COMPONENT command)  # those of the scenes, and one with surfaces
+install(FILES CITATION.cff DESTINATION ${doc}/bernal COMPONENT command OPTIONAL)
+install(DIRECTORY data DESTINATION ${doc}/bernal COMPONENT command
+  REGEX "/data/guide/site$" EXCLUDE PATTERN __pycache__ EXCLUDE)
+find_program(BERNAL_PANDOC pandoc)
+if(BERNAL_PANDOC AND NOT BERNAL_SANITIZE)
+  file(GLOB_RECURSE pages CONFIGURE_DEPENDS data/* include/*.hpp)
+  list(FILTER pages EXCLUDE REGEX "__pycache__")
+  set(module)
+  if(TARGET bernal_python_package)
+    set(module bernal_python_package)  # whose stubs are pages
+  endif()
+  add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/site/index.html
+    COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 data/guide/site/build.py
+      $<TARGET_FILE:bernal_command> . ${PROJECT_BINARY_DIR}/site
+    DEPENDS bernal_command ${module} ${pages} README.md CONTRIBUTING.md CHANGELOG.md src/README.md
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM COMMENT "Making the site")
+  add_custom_target(bernal_site ALL DEPENDS ${PROJECT_BINARY_DIR}/site/index.html)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/site DESTINATION ${doc}/bernal COMPONENT command OPTIONAL)
+endif()
 
 find_program(BERNAL_SHLIBDEPS dpkg-shlibdeps)
 if(NOT BERNAL_SHLIBDEPS)
@@ -29,7 +44,15 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE gzip)  # xz saves a third of 12 MB and takes five times as long
+# Each Debian has packages of its own, and an upgrade of the system is one of bernal: 1~deb12 comes before 1~deb13.
+cmake_host_system_information(RESULT system QUERY DISTRIB_ID)
+cmake_host_system_information(RESULT system_version QUERY DISTRIB_VERSION_ID)
+cmake_host_system_information(RESULT codename QUERY DISTRIB_VERSION_CODENAME)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+if(system_version)
+  string(REPLACE debian deb system "${system}")
+  set(CPACK_DEBIAN_PACKAGE_RELEASE 1~${system}${system_version})
+endif()
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/debian/dependencies.cmake)
@@ -48,6 +71,7 @@ macro(bernal_package name section description)
   string(TOUPPER ${group} group)
   install(CODE "
     set(version ${version})
+    set(codename ${codename})
     include(${PROJECT_SOURCE_DIR}/cmake/debian/write_changelogs.cmake)
     write_changelogs(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${policy})" COMPONENT ${group}_POLICY EXCLUDE_FROM_ALL)
   install(FILES ${policy}/changelog.gz ${policy}/changelog.Debian.gz ${PROJECT_SOURCE_DIR}/cmake/debian/copyright
@@ -98,8 +122,12 @@ need the package bernal where they run."
 
 get_cmake_property(components COMPONENTS)
 if(python IN_LIST components)
+  get_property(bernal_python GLOBAL PROPERTY bernal_python)
+  string(REGEX MATCH "[0-9]+$" minor ${bernal_python})
+  math(EXPR minor "${minor} + 1")
+  string(REGEX REPLACE "[0-9]+$" ${minor} bernal_next_python ${bernal_python})
   set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_SHLIBDEPS ON)
-  set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_DEPENDS "python3 (>= ${bernal_python}), python3 (<< ${bernal_next_python}), python3-numpy")
   set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_RECOMMENDS "bernal (= ${version})")
   set(CPACK_DEBIAN_PYTHON3_BERNAL_PACKAGE_CONTROL_EXTRA
     ${CMAKE_CURRENT_LIST_DIR}/debian/python/postinst ${CMAKE_CURRENT_LIST_DIR}/debian/python/prerm)

@@ -4,7 +4,7 @@ function(write_changelogs project folder)
   string(TIMESTAMP day "%a, %d %b %Y %H:%M:%S +0000" UTC)
   file(REMOVE_RECURSE ${folder})
   file(WRITE ${folder}/changelog.Debian
-"bernal (${version}) bookworm; urgency=medium
+"bernal (${version}) ${codename}; urgency=medium
 
   * Made from the sources by cmake/package; changelog.gz says what changed.
 

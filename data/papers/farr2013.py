@@ -180,18 +180,17 @@ def soft_particles(part: Part) -> str:
 
 ![figure 2 with soft particles](fig2soft.svg)
 
-{spheres} lognormal spheres in a periodic box, {seeds} seeds, ± the deviation of one packing: LAMMPS pushes soft particles
-apart while their box grows, and `relax` takes the rest of their overlap from them (`[engine]`); beside them `relax`
-alone, from the same sizes. All are certified. The first column of rods is the curve, from 16,000 rods; the second is the
-model's answer to the very diameters that were packed.
+{spheres} lognormal spheres in a periodic box, {seeds} seeds, ± the deviation of one packing. LAMMPS pushes soft particles
+apart while their box grows, and `relax` removes the overlaps that are left (`[engine]`). Beside them are packings of the
+same sizes by `relax` alone. All are certified. *Rods* is the curve, from 16,000 rods; *rods of these* is the rod model's
+answer to the very diameters that were packed.
 
 {table(head, rows)}
-The soft particles of the paper are drawn and not printed, so theirs and these cannot be put side by side in numbers. What
-the text says of them is this: they agree with the rod model excellently, and lie slightly above the KTS packings. What
-agrees is how much denser wider sizes pack. What does not is where the curve lies: from the rod model of their sizes these
-are {min(from_rods):+.4f} to {max(from_rods):+.4f} away, and a packing scatters by up to {deviation:.4f}. How dense soft
-particles come to rest is a matter of how slowly they do: here in a thousand steps, and more are denser. `relax` alone
-ends {min(denser):+.4f} to {max(denser):+.4f} from them.
+The paper draws its soft particles and does not print their numbers, so the two cannot be compared in numbers. Its text
+says that they agree with the rod model excellently and lie slightly above the KTS packings. Here, too, wider sizes pack
+denser by what the model says. But the packings lie {min(from_rods):+.4f} to {max(from_rods):+.4f} from the rod model of their sizes, and
+a packing scatters by up to {deviation:.4f}. Soft particles become denser if they come to rest more slowly; here they do so in a
+thousand steps. `relax` alone ends {min(denser):+.4f} to {max(denser):+.4f} from them.
 
 """
 

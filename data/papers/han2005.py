@@ -137,7 +137,7 @@ def write(output, call) -> None:
 
     p = of["protocols"]
 
-    def bought(without, with_):
+    def gained(without, with_):
         return f"{with_.phi - without.phi:+.4f} for {with_.seconds / max(without.seconds, 1e-3):.2g} times the time"
 
     names = ["equal spheres", "radii from 1 to 2"]
@@ -166,34 +166,34 @@ free of overlap. `han2005.csv` has every one of them.
 ![packing](han2005_packing.svg)
 
 {table(["", "spheres", "packing fraction", "seconds"], printed_rows)}
-Printed is a cylinder that is filled by {PRINTED_SPHERES} spheres on a 1.4 GHz PC; neither its dimensions nor the radii
-are in the text. Here it is twice as high as its radius, and {spheres} spheres, equal ones or with radii uniform between 1
-and 2, are as large as makes them that packing fraction, and asked for. {reached}. Left to find places for as many as it
-can, the same protocol comes to {p[-1].phi:.4f} with equal ones.
+The paper fills a cylinder with {PRINTED_SPHERES} spheres on a 1.4 GHz PC; its text gives neither the dimensions of the
+cylinder nor the radii. Here the cylinder is twice as high as its radius. The scene asks for {spheres} spheres, equal or with
+radii uniform between 1 and 2, so large that they have the printed packing fraction. {reached}. If the same protocol places
+as many equal spheres as it can, it reaches {p[-1].phi:.4f}.
 
-## What each part of it buys
+## What each part gains
 
 ![protocols](han2005_protocols.svg)
 
-The same spheres, as many as find a place. *Packing fraction*: of the cylinder. *Of the bed*: of the cylinder up to twice
-the mean height of the spheres, which is what compression alone changes.
+The same spheres, as many as find a place. *Packing fraction*: in the whole cylinder. *Of the bed*: in the cylinder up to
+twice the mean height of the spheres; this is what compression alone changes.
 
 {table(["protocol", "spheres", "packing fraction", "of the bed", "seconds"],
        [[q.name, len(d), f"{d.phi:.4f}", f"{phi_of_bed(d):.4f}", f"{d.seconds:.2f}"] for q, d in zip(PROTOCOLS, p)])}
-The pages of the paper that we have describe compression along one global direction. A public summary of the rest says
-that this leaves chains of spheres, that every sphere therefore gets a random local direction too, and that shaking moves
-spheres across the global direction and breaks arches. With refilling, local directions alone buy
-{bought(p[4], p[6])}, shaking after that {bought(p[6], p[7])}, shaking without local directions
-{bought(p[4], p[5])}. Different from the text: a sphere that has touched slides on, so that one direction alone comes to
-{p[4].phi:.4f} already; and the end of a compression, where the potential along the global direction hardly falls, is
-that summary's, with a threshold of our own.
+The pages of the paper that were at hand describe compression along one global direction. A public summary of the rest says
+that this leaves chains of spheres; that every sphere therefore gets a random local direction, too; and that shaking moves
+spheres across the global direction and breaks arches. With refilling, local directions alone gain
+{gained(p[4], p[6])}, shaking after that {gained(p[6], p[7])}, and shaking without local directions
+{gained(p[4], p[5])}. Two things differ from the text. A sphere that has touched another one slides on, so one direction alone
+reaches {p[4].phi:.4f}. And a compression ends where the potential along the global direction hardly falls: this is from the
+summary, with a threshold chosen here.
 
 ## Local directions
 
 ![tilts](han2005_tilts.svg)
 
-Spheres of which {of_tilts} are 52.89 % of the cylinder, compressed and refilled. The tilt is the length of the random
-part of the local direction; that of the global one is 1.
+Spheres compressed and refilled, {of_tilts} of which have 52.89 % of the cylinder's volume. The tilt is the length of the
+random part of the local direction; the global part has the length 1.
 
 {table(["tilt", "without shaking", "seconds", "with shaking", "seconds"], tilt_rows)}
 ## Time
@@ -201,7 +201,7 @@ part of the local direction; that of the global one is 1.
 ![time](han2005_time.svg)
 
 {table(["spheres", "packing fraction", "seconds"], [[len(d), f"{d.phi:.4f}", f"{d.seconds:.2f}"] for d in of["counts"]])}
-{law}The paper calls its search for contacts highly efficient; its own times over N are not in the text.
+{law}The paper calls its search for contacts highly efficient; its text gives no times over N.
 """)  # fmt: skip
 
 

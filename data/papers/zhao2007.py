@@ -258,7 +258,7 @@ def table_2(results: Results) -> str:
             "seconds"]  # fmt: skip
     return f"""## Table 2: packing fraction and coordination
 
-Mean ± standard deviation of one packing. Printed are single numbers for 10,000 spheres.
+Mean ± standard deviation of one packing. The paper prints single numbers, for 10,000 spheres.
 
 {table(head, rows)}
 """
@@ -346,9 +346,9 @@ packings took {sum(map(seconds_of, results.done)):.0f} s of one core of: {proces
 processor's, of one thread a packing; all packings are certified free of overlap. `zhao2007.csv` has every one of them.
 
 *Published loop*: the paper's, literally. *Fast loop*: the default of `relax`, the same idea on neighbour lists with
-over-relaxed steps; in a box of some ten spheres of many sizes it is the published one.
+over-relaxed steps.
 
-{claims_table(claims)}What lies outside of its tolerance, and why, as far as that is known, is said below.
+{claims_table(claims)}The text below names what lies outside its tolerance, and why, as far as that is known.
 
 {"".join(parts)}""")  # fmt: skip
 

@@ -130,10 +130,10 @@ def drawn_sizes(output, seed: int) -> str:
 ![figure 2](zhao2007_fig2.svg)
 
 {table(head, rows)}
-Of sizes that follow the distribution one draw in twenty differs by more than {1.36 / 100:.4f}. The printed formula,
+If sizes follow the distribution, one draw in twenty differs by more than {1.36 / 100:.4f}. The printed formula,
 r = exp(σ √(−ln t) sin 2πt') with t' the next t, lacks the factor 2 of Box and Muller beside the logarithm: it draws a
 narrower distribution than the one it is said to. The data of their figure 2 are not in the text; one broad hump, skewed
-to the right, stands for them. The paper rejects drawn numbers until one fits, here the distribution is inverted: one
-number gives one radius.
+to the right, stands for them. The paper rejects drawn numbers until one fits. Here the distribution is
+inverted: one number gives one radius.
 
 """

@@ -6,8 +6,7 @@ namespace bernal {
 
 void Archive::fail() {
   throw Error(ErrorCode::bad_packing,
-              "a checkpoint does not hold what this program expects there; run without ‹resume› to start "
-              "anew");
+              "these bytes do not hold what this program expects there; they are of another one");
 }
 
 }  // namespace bernal

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -50,9 +51,9 @@ inline constexpr bool is_archived_as_bytes<std::pair<A, B>> =
 /// Numbers, and structs that say it of themselves, go as their bytes, for machines of one kind; vectors with
 /// their lengths; whatever has a member `archive`, or a function archive(Archive&, T&), by that. Nothing else
 /// compiles.
-/// Order and types of what is read must be those of what was written, which nothing checks but the number of
-/// bytes: whoever reads has made sure before that the bytes are those, of the same program. Cost: that of
-/// copying.
+/// Order and types of what is read must be those of what was written. `check_layout` finds out whether they
+/// have the same sizes: so bytes of another program, which keeps more, less or something else, are told.
+/// Cost: that of copying.
 class Archive {
  public:
   Archive() = default;
@@ -66,6 +67,15 @@ class Archive {
   template <class... Values>
   void operator()(Values&... values) {
     (take(values), ...);
+  }
+
+  /// Keeps a digest of the sizes of all values so far, in their order, or reads it. Throws Error{bad_packing}
+  /// where these were others when it was written.
+  void check_layout() {
+    const std::uint64_t here = layout_;
+    std::uint64_t there = here;
+    take(there);
+    if (there != here) fail();
   }
 
  protected:
@@ -85,9 +95,19 @@ class Archive {
     else if constexpr (requires { archive(*this, value); })
       archive(*this, value);
     else if constexpr (is_archived_as_bytes<T>)
-      bytes(static_cast<void*>(&value), sizeof value);
+      take_bytes(value);
     else
       take_parts(value);
+  }
+
+  template <class T>
+  void take_bytes(T& value) {
+    note_size(sizeof value);
+    bytes(static_cast<void*>(&value), sizeof value);
+  }
+
+  void note_size(std::uint64_t of_value) {
+    layout_ = std::rotl((layout_ ^ of_value) * 0x9E3779B97F4A7C15u, 29);
   }
 
   /// A length, of values that take at least that many bytes each.
@@ -106,6 +126,7 @@ class Archive {
     const std::size_t n = length(values.size(), plain ? sizeof(T) : 1);
     if (reads()) values.resize(n);
     if constexpr (plain) {
+      note_size(sizeof(T));
       if (n > 0) bytes(static_cast<void*>(values.data()), n * sizeof(T));
     } else {
       for (T& value : values) take(value);
@@ -117,6 +138,7 @@ class Archive {
     if (reads()) values.assign(plain.begin(), plain.end());
   }
   void take_parts(std::string& text) {
+    note_size(1);
     const std::size_t n = length(text.size(), 1);
     if (reads()) text.resize(n);
     if (n > 0) bytes(text.data(), n);
@@ -150,6 +172,8 @@ class Archive {
     if (values.size() > 0)
       bytes(values.data(), static_cast<std::size_t>(values.size()) * sizeof(typename Derived::Scalar));
   }
+
+  std::uint64_t layout_ = 0;
 };
 
 /// Into a string.

@@ -110,7 +110,7 @@ std::vector<std::string> explanations(const CostReport& report, const CostHeadin
           "those of the processor, of all threads together, without reading files; wall s beside them. "
           "Medians over the seeds; ± is half of what lies between the least and the greatest.{}",
           report.rows.size(), runs, heading.seeds, heading.seeds == 1 ? "" : "s", report.runs_made,
-          heading.machine, version(), fmt::format(" The end: {}.", report.ending)),
+          heading.machine, text_of(this_program()), fmt::format(" The end: {}.", report.ending)),
       fmt::format(
           "Shown are the fronts and what changes one key; all {} settings are in cost.csv. Numbers "
           "mark the front: in the order of seconds each is denser than the one before it by more than "
@@ -197,7 +197,7 @@ std::string cost_html(const CostReport& report, const CostHeading& heading, std:
       "</style></head>\n<body><main>\n<h1>What accuracy costs: {}</h1>\n<span class=\"dim\">measured by "
       "bernal {}"
       "</span>\n<div class=\"cards\">\n",
-      escaped(heading.scene), escaped(version()));
+      escaped(heading.scene), escaped(text_of(this_program())));
   page.card(fmt::format("{:.4f}", chosen.phi), "Recommended: packing fraction",
             fmt::format("{:.4f} as the scene is", own.phi));
   page.card(seconds_in_words(chosen.seconds), "Recommended: processor time",

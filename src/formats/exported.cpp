@@ -219,8 +219,9 @@ bool is_plain_word(const std::string& word) {
 std::string as_word(const std::string& word) { return is_plain_word(word) ? word : toml_string(word); }
 
 std::string Exported::title() const {
-  return fmt::format("bernal {}: {} spheres in a {}, packing fraction {:.6g}", version(), grouped(size()),
-                     name_of(domain), packing.packing_fraction() - contacts.change_of_porosity());
+  return fmt::format("bernal {}: {} spheres in a {}, packing fraction {:.6g}", text_of(this_program()),
+                     grouped(size()), name_of(domain),
+                     packing.packing_fraction() - contacts.change_of_porosity());
 }
 
 std::string row_of(const Vector<3>& v, std::string_view between) {

@@ -22,7 +22,7 @@ void write_extxyz(const Exported& file, TextFile& out) {
           row_of(box.lower), "\" pbc=\"", file.periods_as("T", "F"),
           "\" Properties=id:I:1:species:S:1:pos:R:3:radius:R:1", typed ? ":class:I:1" : "",
           " unit=", name_of(file.unit()), " packing_fraction=", file.packing.packing_fraction(),
-          " generator=\"bernal ", version(), "\"\n");
+          " generator=\"bernal ", text_of(this_program()), "\"\n");
   for (std::size_t i = 0; i < file.size(); ++i) {
     out.add(i + 1, " X ", file.coordinate(0, i), ' ', file.coordinate(1, i), ' ', file.coordinate(2, i), ' ',
             file.spheres.r[i]);

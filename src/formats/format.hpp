@@ -70,7 +70,8 @@ struct Exported {
   std::string name_as_word() const;
   /// "spheres", or "spheres_3" if there are several types.
   std::string name_of_type(std::uint32_t type) const;
-  /// "bernal 0.1.0: 1,000 spheres in a periodic box, packing fraction 0.64", in ASCII.
+  /// "bernal 0.2.0 (packings 25, commit 0123456789ab): 1,000 spheres in a periodic box, packing fraction
+  /// 0.64", in ASCII.
   std::string title() const;
 };
 

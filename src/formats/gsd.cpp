@@ -106,7 +106,9 @@ void write_gsd(const Exported& file, StagedFolder& staged) {
   names.resize((names.size() / block_bytes + 1) * block_bytes);  // and the empty name that ends the list
 
   GsdHeader header;
-  const std::string application = fmt::format("bernal {}, lengths in {}", version(), name_of(file.unit()));
+  // There is no room for the commit.
+  const std::string application = fmt::format("bernal {} (packings {}), lengths in {}", version(),
+                                              packings_number(), name_of(file.unit()));
   std::memcpy(header.application, application.data(),
               std::min(application.size(), sizeof header.application - 1));
   header.index_location = sizeof header;

@@ -10,7 +10,6 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/domain/domain.hpp"
-#include "bernal/version.hpp"
 #include "files/csv_lines.hpp"
 #include "files/file_kind.hpp"
 #include "formats/import_domain.hpp"
@@ -128,10 +127,9 @@ void require_sensible(const Packing& packing, const std::filesystem::path& file)
 
 void require_elsewhere(const std::filesystem::path& file, const std::filesystem::path& folder) {
   if (is_in_place_of_result(file, folder))
-    throw Error(
-        ErrorCode::cannot_write,
-        "is the file being imported, and the result would take its place; give another ‹folder›",
-        {file.string()});
+    throw Error(ErrorCode::cannot_write,
+                "is the file being imported, and the result would take its place; give another ‹folder›",
+                {file.string()});
 }
 
 std::string range_of_sizes(const std::vector<double>& radii) {
@@ -158,13 +156,12 @@ ImportedPacking taken_over(FileContents contents, const Reading& reading, const 
   packing.domain = std::move(place.domain);
   packing.volume = volume_of(packing.domain);
   packing.scene = std::move(place.scene);
-  packing.version = version();
+  packing.program = this_program();
   packing.expected_packing_fraction = std::numeric_limits<double>::quiet_NaN();  // unknown
   packing.outcome = Outcome::imported;
-  packing.reason =
-      fmt::format("{} read from {}, {}",
-                  packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres",
-                  from, format);
+  packing.reason = fmt::format(
+      "{} read from {}, {}",
+      packing.spheres.size() == 1 ? "1 sphere" : grouped(packing.spheres.size()) + " spheres", from, format);
   require_sensible(packing, reading.file);
   if (reading.monitor.stop()) throw Cancelled();
   made.notes.push_back(

@@ -120,7 +120,7 @@ void bind_packing(py::module_& module) {
       .def_readonly("seed", &Packing::seed)
       .def_readonly("threads", &Packing::threads)
       .def_readonly("seconds", &Packing::seconds)
-      .def_readonly("version", &Packing::version);
+      .def_property_readonly("program", [](const Packing& p) { return text_of(p.program); });
 }
 
 }  // namespace bernal::python

@@ -45,8 +45,7 @@ void raise(const Error& error, std::string_view code) {
   if (const std::string place = where.text(); !place.empty()) message.erase(0, place.size() + 2);
   message = in_words_of_python(message);
   const py::object raised =
-      called(exception_of_error(),
-             py::make_tuple(code, message, where.file, where.line, where.column));
+      called(exception_of_error(), py::make_tuple(code, message, where.file, where.line, where.column));
   PyErr_SetObject(py::type::of(raised).ptr(), raised.ptr());
 }
 
@@ -84,6 +83,8 @@ PYBIND11_MODULE(_core, module) {
   using namespace bernal::python;
   py::register_exception_translator(&translate);
   module.attr("version") = bernal::version();
+  module.attr("commit") = bernal::commit();
+  module.attr("packings_number") = bernal::packings_number();
   module.def("raise_errors_as", [](const py::object& make) { exception_of_error() = make; });
   bind_scene(module);
   bind_packing(module);

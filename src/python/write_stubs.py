@@ -148,7 +148,7 @@ def class_of(kind: type) -> str:
 def stub_of(module: Any, head: str) -> str:
     text = doc(module.__doc__, "") + head + "\n"
     if hasattr(module, "__version__"):
-        text += "__version__: str\n"
+        text += "__version__: str\ncommit: str\npackings_number: int\n"
     text += f"__all__ = {list(module.__all__)!r}\n\n"
     for name in module.__all__:
         of = getattr(module, name)

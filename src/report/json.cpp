@@ -98,7 +98,9 @@ std::uint64_t peak_memory_bytes() {
 }
 
 Json run_json(const Packing& packing, std::uint64_t spheres, double packing_fraction) {
-  return {{"version", packing.version},
+  return {{"version", packing.program.version},
+          {"commit", packing.program.commit},
+          {"packings_number", packing.program.packings_number},
           {"seed", packing.seed},
           {"threads", packing.threads},
           {"outcome", name_of(packing.outcome)},

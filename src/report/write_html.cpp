@@ -220,7 +220,7 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
   page.raw(report_style);
   if (!pictures.view.empty()) page.raw(viewer_style);
   page.add("</style></head>\n<body><main>\n<h1>{}</h1>\n<span class=\"dim\">packed by bernal {}</span>\n",
-           escaped(title), escaped(packing.version));
+           escaped(title), escaped(text_of(packing.program)));
   write_headline(page, report);
   if (pictures.packing.empty()) {
     page.add("<p class=\"dim\">There is no picture of {} dimension{}.</p>\n", packing.spheres.dimension(),
@@ -244,9 +244,9 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
   write_certificate(page, report);
   page.add(
       "<p class=\"dim\">bernal {} · seed {} · hash of the spheres <code>{}</code>: the same scene, seed and "
-      "version give the same hash, whatever the number of threads, where C library and kind of processor are "
-      "the same.</p>\n</main>\n",
-      escaped(packing.version), packing.seed, report.hash);
+      "packings number give the same hash, whatever the number of threads, where C library and kind of "
+      "processor are the same.</p>\n</main>\n",
+      escaped(text_of(packing.program)), packing.seed, report.hash);
   if (!pictures.view.empty()) write_view_program(page, pictures.view);
   page.raw("</body></html>\n");
   return std::move(page).finish();

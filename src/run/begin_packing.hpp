@@ -4,7 +4,6 @@
 #include <thread>
 
 #include "bernal/plan/plan.hpp"
-#include "bernal/version.hpp"
 
 namespace bernal {
 
@@ -18,7 +17,7 @@ inline Packing begin_packing(const Plan& plan, std::optional<std::uint64_t> seed
   packing.seed = seed.value_or(plan.scene.seed);
   packing.scene.seed = packing.seed;
   packing.threads = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
-  packing.version = version();
+  packing.program = this_program();
   return packing;
 }
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "bernal/version.hpp"
 #include "scene/given_files.hpp"
 #include "scene/run_archive.hpp"
 
@@ -102,30 +102,42 @@ static void archive(Archive& a, Scene& scene) {
 
 static void archive(Archive& a, Packing& p) {
   a(p.spheres, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.expected_of_sizes, p.size_scale,
-    p.scene, p.seed, p.threads, p.version, p.outcome, p.reason, p.effects, p.history, p.seconds, p.resumed);
+    p.scene, p.seed, p.threads, p.program, p.outcome, p.reason, p.effects, p.history, p.seconds, p.resumed);
 }
 
+/// Which bernal wrote the bytes, and whether this one may read them, stands in front; of those before 0.2 it
+/// is the version alone.
 std::string bytes_of(const Packing& packing) {
   std::string bytes;
   ArchiveToBytes archive(bytes);
-  std::string of_version(version());
+  std::string by = "bernal " + text_of(this_program());
+  int packings = packings_number();
   Packing written = packing;
-  archive(of_version, written);
+  archive(by, packings, written);
+  archive.check_layout();
   return bytes;
 }
 
 Packing packing_of_bytes(std::string_view bytes) {
   ArchiveFromBytes archive(bytes);
-  std::string of_version;
-  archive(of_version);
-  if (of_version != version())
-    throw Error(ErrorCode::bad_packing,
-                fmt::format("these bytes are a packing of bernal {}, and this is {}; write it to a folder "
-                            "with that one, and read it from there",
-                            of_version, version()));
+  std::string by;
+  int packings = 0;
   Packing packing;
-  archive(packing);
-  return packing;
+  try {
+    archive(by);
+    if (by.starts_with("bernal ")) archive(packings);
+    if (packings == packings_number()) {
+      archive(packing);
+      archive.check_layout();
+      return packing;
+    }
+  } catch (const Error& error) {  // another version of the same packings, which keeps other things
+    if (error.code() != ErrorCode::bad_packing) throw;
+  }
+  throw Error(ErrorCode::bad_packing,
+              fmt::format("these bytes are a packing of {}, and this is bernal {}; write it to a folder with "
+                          "that one, and read it from there",
+                          plain_text(by, 100), text_of(this_program())));
 }
 
 }  // namespace bernal

@@ -6,6 +6,7 @@ namespace bernal {
 
 // What a run did, as bytes: in checkpoints, and in packings for other processes.
 
+inline void archive(Archive& a, Program& p) { a(p.version, p.commit, p.packings_number); }
 inline void archive(Archive& a, Effect& effect) { a(effect.name, effect.calls, effect.seconds); }
 inline void archive(Archive& a, Milestone& m) {
   a(m.stage, m.spheres, m.packing_fraction, m.potential, m.max_overlap, m.seconds);

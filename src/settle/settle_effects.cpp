@@ -1,5 +1,5 @@
 // What insertion, compression, shaking and refilling bring with them, and what that costs: one core, seconds
-// and bytes. The constants are fitted to runs of 500 to 30,000 spheres; tests/bench/ESTIMATES.md holds the
+// and bytes. The constants are fitted to runs of 500 to 30,000 spheres; data/results/estimates.md holds the
 // estimates against runs.
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Holds what `bernal explain` expects of a scene against what `bernal pack` takes, and prints the table of
-// tests/bench/ESTIMATES.md: `bernal_estimates COMMAND`.
+// data/results/estimates.md: `bernal_estimates COMMAND`.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

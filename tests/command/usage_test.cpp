@@ -1,6 +1,7 @@
+#include <sys/stat.h>
 #include <cctype>
 #include <filesystem>
-#include <sys/stat.h>
+#include <regex>
 
 #include "check.hpp"
 
@@ -62,8 +63,20 @@ TEST(Usage, KeysSaysWhatASceneMayHold) {
 TEST(Usage, VersionIsOneLine) {
   const Ended version = bernal({"--version"});
   EXPECT_EQ(version.status, 0);
-  EXPECT_TRUE(version.out.starts_with("bernal ")) << version.out;
   EXPECT_EQ(std::ranges::count(version.out, '\n'), 1);
+  const std::regex form(
+      R"(bernal \d+\.\d+\.\d+ \(packings \d+, commit ([0-9a-f]{12}(\+changes)?|unknown)\)\n)");
+  EXPECT_TRUE(std::regex_match(version.out, form)) << version.out;
+  // A result says the same.
+  const Folder folder;
+  const std::string scene = folder.write("scene.toml", small_scene), out = folder / "out";
+  ASSERT_EQ(bernal({"pack", scene, "-o", out, "--quiet"}).status, 0);
+  const nlohmann::json report = report_of(out);
+  const std::string said = report["version"].get<std::string>() + " (packings " +
+                           std::to_string(report["packings_number"].get<int>()) + ", commit " +
+                           report["commit"].get<std::string>() + ")";
+  EXPECT_EQ("bernal " + said + "\n", version.out);
+  EXPECT_NE(text_of(out + "/report.html").find("packed by bernal " + said), std::string::npos);
 }
 
 TEST(Usage, WrongOnesAreOneLineAndExitTwo) {
@@ -115,7 +128,8 @@ TEST(Usage, NumbersThatAreNoneAndThoseBeyondAllBoundsAreRefused) {
     };
     for (const auto& words : wrong) {
       SCOPED_TRACE(words.front() + " " + number);
-      if (words[0] == "map" && words[2].starts_with('-') && !std::isdigit(words[2][1])) continue;  // an option
+      if (words[0] == "map" && words[2].starts_with('-') && !std::isdigit(words[2][1]))
+        continue;  // an option
       expect_refused_in_one_line(bernal(words), {"must be a number from -1e+100 to 1e+100", "--help"});
     }
     EXPECT_FALSE(std::filesystem::exists(out));

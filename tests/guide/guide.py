@@ -8,7 +8,7 @@
 In a page
   ```sh            is run by bash, with bernal on PATH and apps/, data/ and tests/ of the source at hand; words behind it:
                    exit=N it ends so; slow; needs=PROGRAM,… it is passed over where one is missing
-  ```toml, ```csv  are written to the file that their first line names: # mine.toml
+  ```toml, ```csv, ```cmake, ```cpp  are written to the file that their first line names: # mine.toml, // mine.cpp
   ```python        is run after the Python blocks before it, in one process
   ```output        is what the block before it prints, on both streams; a line with … stands for any lines, … in a line
                    for anything, and times and sizes of memory are not compared
@@ -134,10 +134,10 @@ class Page:
                     self.problem(block, "nothing is run before this output")
                 elif printed is not None:
                     self.compare(block, before, printed)
-            elif block.language in ("toml", "csv"):
+            elif block.language in ("toml", "csv", "cmake", "cpp"):
                 self.write_file(block, folder)
-            elif block.language not in ("text", "cmake", "cpp", "json", "c++"):
-                self.problem(block, f"a block of \"{block.language}\" is not run; sh, toml, csv, python, output or text")
+            elif block.language not in ("text", "json"):
+                self.problem(block, f"a block of \"{block.language}\" is not run; sh, toml, csv, cmake, cpp, python, output or text")
         self.compare_pictures(folder)
         if self.session:
             self.session.stdin.close()
@@ -177,9 +177,10 @@ class Page:
         return printed.splitlines()
 
     def write_file(self, block, folder):
-        name = block.lines[0].removeprefix("# ") if block.lines else ""
-        if not re.fullmatch(r"[\w.-]+\.\w+", name):
+        name = re.sub("^(#|//) ", "", block.lines[0]) if block.lines else ""
+        if not re.fullmatch(r"(\w+/)?[\w.-]+\.\w+", name):
             return self.problem(block, "the first line must name the file: # mine.toml")
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text("\n".join(block.lines) + "\n")
 
     def compare(self, block, before, printed):

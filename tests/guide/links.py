@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Whether every link in the project's Markdown leads to a file that is there, and to a heading in it; and whether the
-files exist that the pages for developers and the comments in the code name."""
+"""Whether every link in the project's Markdown leads to a file that is there, and to a heading in it; whether the files
+exist that the pages for developers and the comments in the code name; and whether installed headers name only what
+whoever has them alone can find."""
 
 import pathlib
 import re
@@ -44,13 +45,34 @@ def named_files():
                     yield f"{file.relative_to(SOURCE)}:{number}", name
 
 
+def strangers_in_headers():
+    """(Where, name) of what the comments of installed headers name and those who have only these headers cannot find:
+    files of the source, and names in backticks that no such header declares and no scene, report or program has."""
+    own = re.search(r"set\(bernal_own_headers\s+([^)]*)\)", (SOURCE / "src/CMakeLists.txt").read_text())[1].split()
+    folder = SOURCE / "include/bernal"
+    headers = {str(file.relative_to(folder)): file.read_text().splitlines() for file in sorted(folder.rglob("*.hpp"))}
+    headers = {name: lines for name, lines in headers.items() if name not in own}
+    written = " ".join(line.partition("//")[0] for lines in headers.values() for line in lines)
+    known = set(re.findall(r"\w+", written))
+    for file in sorted(SOURCE.glob("data/schemas/*.json")):
+        known |= set(re.findall(r"\w+", file.read_text()))
+    for header, lines in headers.items():
+        for number, line in enumerate(lines, 1):
+            comment = line.partition("//")[2]
+            names = [name for name in NAMED.findall(comment) if name not in headers]
+            names += re.findall(r"(?<![\w/])(?:src|tests|data|apps|cmake)/[\w/.-]*\w", comment)
+            for code in re.findall(r"`(\w+(?:(?:::|\.)\w+)*)(?:\(\))?`", comment):
+                names += [code] if "." not in code and not set(code.split("::")) <= known else []
+            yield from ((f"include/bernal/{header}:{number}", name) for name in dict.fromkeys(names))
+
+
 def is_there(name):
     return any((SOURCE / root / name).exists() for root in ("", "src", "include", "include/bernal", "tests"))
 
 
 def main():
     files = [SOURCE / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "src/README.md")]
-    files += sorted(SOURCE.glob("data/**/*.md")) + sorted(SOURCE.glob("tests/bench/*.md"))
+    files += sorted(SOURCE.glob("data/**/*.md"))
     problems, links = [], 0
     for file in files:
         for link in LINK.findall(prose_of(file.read_text())):
@@ -65,6 +87,7 @@ def main():
                 problems.append(f"{file}: {link}: no heading makes that anchor")
     named = list(named_files())
     problems += [f"{where}: there is no {name}" for where, name in named if not is_there(name) and "build/" not in name]
+    problems += [f"{where}: {name} is in no header that is installed" for where, name in strangers_in_headers()]
     print("\n".join(problems) or f"{links} links in {len(files)} files lead somewhere")
     sys.exit(bool(problems) or links < 50 or len(named) < 50)
 

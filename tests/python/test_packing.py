@@ -12,7 +12,6 @@ import numpy as np
 from support import COMMAND, HELIX, InFolder, small
 
 import bernal
-from bernal import _core
 
 
 def address(array):
@@ -295,8 +294,9 @@ class Sizes(InFolder):
 class Version(unittest.TestCase):
     def test_it_is_that_of_the_command(self):
         said = subprocess.run([COMMAND, "--version"], capture_output=True, text=True, check=True).stdout
-        self.assertIn(bernal.__version__, said)
-        self.assertEqual(bernal.__version__, _core.version)
+        program = f"{bernal.__version__} (packings {bernal.packings_number}, commit {bernal.commit})"
+        self.assertEqual(said, f"bernal {program}\n")
+        self.assertEqual(bernal.pack(small(count=5)).program, program)
 
 
 if __name__ == "__main__":

@@ -90,9 +90,12 @@ class Pickles(InFolder):
                 self.assertEqual(files_in("out"), first)
                 self.assertEqual(bernal.read("out").hash, packing.hash)
 
-    def test_they_are_of_one_version(self):
+    def test_they_are_of_one_packings_number(self):
         packing = bernal.pack(small(count=5))
-        bytes_of = pickle.dumps(packing).replace(bernal.__version__.encode(), b"9" * len(bernal.__version__))
+        number, bytes_of = bernal.packings_number.to_bytes(4, "little"), pickle.dumps(packing)
+        program = f"bernal {packing.program}".encode()
+        self.assertIn(program + number, bytes_of)
+        bytes_of = bytes_of.replace(program + number, program + (7).to_bytes(4, "little"))
         self.refuses(bernal.InputError, "write it to a folder", lambda: pickle.loads(bytes_of))
 
     def test_processes_send_scenes_and_packings_to_each_other(self):

@@ -43,7 +43,7 @@ inline Packing packing_of(Spheres<3> spheres, const Box& domain) {
       "[spheres]\nfill = true\nradius = { distribution = \"uniform\", min = 0.1, max = 2.0, "
       "basis = \"number\" }\n",
       "test.toml");
-  packing.version = "0.0.0";
+  packing.program.version = "0.0.0";
   packing.reason = "made by hand";
   return packing;
 }

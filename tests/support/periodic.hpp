@@ -26,7 +26,7 @@ Packing periodic_packing(Spheres<D> spheres, const Vector<D>& edges,
                               "[spheres]\nfill = true\n{}\n",
                               D, fmt::join(edges, ", "), sizes),
                   "test.toml");
-  packing.version = "0.0.0";
+  packing.program.version = "0.0.0";
   packing.reason = "made by hand";
   return packing;
 }

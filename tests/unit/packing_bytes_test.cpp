@@ -64,10 +64,37 @@ TEST(PackingBytes, HoldAllOfAPackingToTheBit) {
   }
 }
 
-TEST(PackingBytes, AreThoseOfThisVersion) {
-  std::string bytes = bytes_of(run(build(of_equal(Box{{0, 0, 0}, {4, 4, 4}}, 2))));
-  bytes[sizeof(std::uint64_t)] = '?';
-  EXPECT_THROW(packing_of_bytes(bytes), Error);
+std::string refusal_of(const std::string& bytes) {
+  try {
+    packing_of_bytes(bytes);
+    return "";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_packing);
+    return error.what();
+  }
+}
+
+TEST(PackingBytes, AreThoseOfOnePackingsNumberAndOneLayout) {
+  const std::string bytes = bytes_of(run(build(of_equal(Box{{0, 0, 0}, {4, 4, 4}}, 2)))),
+                    program = "bernal " + text_of(this_program());
+  const std::size_t name = sizeof(std::uint64_t), number = name + program.size();
+  ASSERT_EQ(bytes.substr(name, program.size()), program);
+  std::string changed = bytes;
+  changed[name + 7] = '9';  // another version with the same packings
+  EXPECT_EQ(refusal_of(changed), "");
+  ++changed[number];
+  EXPECT_NE(refusal_of(changed).find("a packing of bernal 9"), std::string::npos);
+  EXPECT_NE(refusal_of(changed).find("this is " + program), std::string::npos);
+  changed = bytes;
+  ++changed.back();  // other members
+  EXPECT_NE(refusal_of(changed).find("write it to a folder"), std::string::npos);
+  EXPECT_NE(refusal_of(bytes.substr(0, bytes.size() / 2)), "");
+  const std::string earlier = std::string(
+                                  "\5\0\0\0\0\0\0\0"
+                                  "0.1.0",
+                                  13) +
+                              bytes.substr(number);
+  EXPECT_NE(refusal_of(earlier).find("a packing of 0.1.0"), std::string::npos);
 }
 
 // What a scene holds itself is written beside it, and read from there.

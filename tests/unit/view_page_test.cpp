@@ -248,7 +248,7 @@ TEST(ViewPage, LetsNothingOutOfItsScripts) {
   const std::string hostile = "</script><script>alert(1)</script>\xe2\x80\xa8\"'`${1}\xff.stl";
   packing.scene.file = hostile;
   packing.scene.container = MeshFile{hostile};
-  packing.reason = packing.version = hostile;
+  packing.reason = packing.program.version = hostile;
   const std::string page = view_page(packing);
   EXPECT_TRUE(is_utf8(page));
   EXPECT_EQ(count_of("<script", page), 3u);

@@ -1,10 +1,18 @@
-"""Whether every link and picture of a site leads to a file that is there, and to a place in it."""
+#!/usr/bin/python3
+"""Whether every link and picture of a site leads to a file that is there, and to a place in it; and, where tidy is
+installed, whether its HTML is right.
+
+  data/guide/site/check.py SITE
+"""
 
 import html.parser
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 import urllib.parse
+from concurrent.futures import ThreadPoolExecutor
 
 
 class Reader(html.parser.HTMLParser):
@@ -25,8 +33,12 @@ def read(file):
     return reader
 
 
+def pages_of(folder):
+    return sorted(page for page in folder.rglob("*.html") if "files" not in page.relative_to(folder).parts)
+
+
 def problems_of(folder):
-    pages = {file: read(file) for file in sorted(folder.rglob("*.html")) if "files" not in file.relative_to(folder).parts}
+    pages = {file: read(file) for file in pages_of(folder)}
     problems = []
     for file, page in pages.items():
         for name in sorted({i for i in page.ids if page.ids.count(i) > 1}):
@@ -43,7 +55,23 @@ def problems_of(folder):
     return problems
 
 
+def tidied(folder):
+    """What tidy says of the pages; nothing where it is not installed."""
+    if not shutil.which("tidy"):
+        return []
+
+    def complaints(page):
+        said = subprocess.run(["tidy", "-quiet", "-errors", "--show-warnings", "yes", "--drop-empty-elements", "no",
+                               "--warn-proprietary-attributes", "no", page], capture_output=True, text=True).stderr
+        return [f"{page}: {line}" for line in said.splitlines()]
+
+    with ThreadPoolExecutor() as pool:
+        return sum(pool.map(complaints, pages_of(folder)), [])
+
+
 if __name__ == "__main__":
-    found = problems_of(pathlib.Path(sys.argv[1]).resolve())
-    print("\n".join(found) or "every link leads somewhere")
-    sys.exit(bool(found))
+    site = pathlib.Path(sys.argv[1]).resolve()
+    pages = len(pages_of(site))
+    found = problems_of(site) + tidied(site)
+    print("\n".join(found) or f"{pages} pages, every link leads somewhere")
+    sys.exit(bool(found) or pages < 50)

@@ -14,10 +14,30 @@ def phrase(text):
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", escaped(text))
 
 
+def stacked(table, columns=4):
+    """A table of words in so many columns or more, so marked that a narrow window shows its cells below each other, each with the
+    head of its column; others stay as they are."""
+    heads = [html.unescape(re.sub("<[^>]+>", "", head)).strip() for head in re.findall(r"<th\b[^>]*>(.*?)</th>", table, flags=re.S)]
+    if len(heads) < columns or 'class="number"' in table:
+        return table
+
+    def row(found):
+        numbers = iter(range(len(heads)))
+
+        def cell(tag):
+            number = next(numbers)
+            return tag[0] if number == 0 or not heads[number] else f'<td data-head="{html.escape(heads[number])}"{tag[1]}>'
+
+        return re.sub(r"<td\b([^>]*)>", cell, found[0])
+
+    return re.sub(r"<tr\b.*?</tr>", row, table, flags=re.S).replace("<table>", '<table class="stacked">', 1)
+
+
 def table(head, rows):
     cells = "".join(f"<th>{escaped(h)}</th>" for h in head)
     body = "\n".join("<tr>" + "".join(row) + "</tr>" for row in rows)
-    return f'<div class="wide"><table><thead><tr>{cells}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
+    made = f"<table><thead><tr>{cells}</tr></thead><tbody>\n{body}\n</tbody></table>"
+    return f'<div class="wide">{stacked(made, 3)}</div>'
 
 
 def cell(content, kind=""):
@@ -83,11 +103,14 @@ def help_of(command, *arguments):
                           env={"PATH": "/usr/bin:/bin", "COLUMNS": "110"}).stdout
 
 
-def commands(command):
+def names_of_commands(command):
+    listed = help_of(command).partition("Subcommands:\n")[2].partition("\n\n")[0]
+    return re.findall(r"^  ([a-z]+) {2,}", listed, flags=re.M)
+
+
+def commands(command, names):
     """HTML of --help, of the command and of each subcommand."""
-    whole = help_of(command)
-    names = re.findall(r"^  ([a-z]+) {2,}", whole[whole.index("ubcommands"):], flags=re.M)
-    parts = ["<h1>Every command</h1>", f"<pre><code>{escaped(whole.strip())}</code></pre>"]
+    parts = ["<h1>Every command</h1>", f"<pre><code>{escaped(help_of(command).strip())}</code></pre>"]
     for name in names:
         parts.append(f'<h2 id="{name}">bernal {name}</h2>')
         parts.append(f"<pre><code>{escaped(help_of(command, name).strip())}</code></pre>")

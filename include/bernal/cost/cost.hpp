@@ -75,13 +75,16 @@ struct CostReport {
   std::vector<std::string> refused;          ///< settings that cannot be run, each with why
   std::string ending;                        ///< why no more was measured
   std::size_t runs_made = 0, runs_kept = 0;  ///< in this call, in earlier ones
-  bool complete = false;                     ///< nothing was left to try
+  /// In one sentence, which runs of earlier calls do not count, as a bernal of other packings made them;
+  /// empty if all do.
+  std::string outdated;
+  bool complete = false;  ///< nothing was left to try
   bool cancelled = false;
   std::vector<std::filesystem::path> files;
 };
 
 /// Runs a scene with other values of the keys that buy accuracy in its stages, its accuracy and its container
-/// (`schema::Key::ladder`), and says what each costs and buys.
+/// and says what each costs and buys.
 ///
 /// First the scene as it is, then one key after the other a step at a time, away from the scene's value, then
 /// combinations of those that made a difference, near the front that has been found, until the time is over

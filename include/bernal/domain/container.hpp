@@ -68,7 +68,7 @@ class Container {
   virtual void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const = 0;
 
   /// How far a sphere of radius r at c, inside, may move along the unit vector `direction` before its
-  /// clearance falls to r + skin (see core/tolerance.hpp), at most `limit` >= 0. Never rounded towards the
+  /// clearance falls to r + skin, at most `limit` >= 0. Never rounded towards the
   /// wall: the clearance stays at or above r + skin/2 on the whole way if it was so at the start. A sphere
   /// that rests on the wall can leave it; one that penetrates slightly can move out of the wall, never
   /// further in: then the answer is 0. A tangent of a round wall leads into it at once, so what slides there
@@ -81,7 +81,7 @@ class Container {
   /// the real numbers that they are, `exact` is the largest such double; `filtered` is not above that and a
   /// few roundoffs below it at most; `plain` reaches beyond the wall by less than 2 `free_path_bound`, and
   /// stops no farther before it. 0 for a ball that reaches beyond the wall at the start. `limit` may be
-  /// infinite. See domain/free_path.hpp.
+  /// infinite.
   ///
   /// A ball that rests on a wall and is to slide along it gets nowhere by this, since every rounding of a
   /// tangent leads into the wall or off it: what moves in steps asks for `first_contact`.
@@ -134,7 +134,7 @@ class Container {
 
 /// The container of a box of two or three dimensions, cylinder, sphere or polygon. Throws Error{bad_argument}
 /// for lengths that are not positive and finite, an axis without direction or a periodic one that is oblique,
-/// and for a mesh: see `make_mesh_container` in bernal/cad.
+/// and for a mesh.
 std::unique_ptr<Container> make_analytic_container(const Domain&, WallArithmetic, double resolution);
 
 }  // namespace bernal

@@ -42,7 +42,7 @@ Vector<3> closest_point(const Facet&, const Vector<3>& p);
 
 /// How far a sphere of radius r at c may move along the unit vector `direction`, at most `limit`, so that its
 /// distance from the facet stops at r + skin; invariant: it never falls below r + skin/2 if it was not below
-/// at the start; if it was, the answer is 0 unless the distance grows. See core/tolerance.hpp.
+/// at the start; if it was, the answer is 0 unless the distance grows.
 double first_contact(const Facet&, const Vector<3>& c, double r, const Vector<3>& direction, double limit,
                      double skin);
 

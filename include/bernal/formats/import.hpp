@@ -15,7 +15,7 @@ namespace bernal {
 struct ImportFormat {
   std::string name;                  ///< "lammps"
   std::string what;                  ///< the program, and what the file holds
-  std::string unit;                  ///< of its lengths: "cm", or its source, "‹unit›"; see `with_options`
+  std::string unit;                  ///< of its lengths: "cm", or its source, "‹unit›": an option's name
   std::vector<std::string> options;  ///< options of this format alone or of some: "columns", "frame"
 };
 /// All formats, in the order in which they are tried on a file.

@@ -50,7 +50,7 @@ struct BedProfile {
   static constexpr double core_depth = 3, well_covered = 0.95;
 
   /// Equal layers from the floor to the highest point. The volumes of sphere and container slices are exact
-  /// to rounding, see domain/volume_below.hpp.
+  /// to rounding.
   struct Layer {
     double from, to, packing_fraction;
   };
@@ -76,9 +76,8 @@ struct BedOptions {
 /// The height depends on the width of the cells: for equal spheres, halving it lowers the height by 0.09 d
 /// for a level top and by 0.16 d for the rough one that `compress` leaves; doubling it raises the height by
 /// 0.06 d and 0.18 d. Cost: that of `measure_rest`, about 0.3 µs a sphere for the surface, O(triangles) a
-/// layer in a mesh, and 32,768 wall queries. `made`: see `local_container`. Precondition: spheres of the
-/// domain's dimension, inside it; direction not 0.
-/// dimension, inside it; direction not 0.
+/// layer in a mesh, and 32,768 wall queries. `made`: as `MeasureOptions::container`. Precondition: spheres of
+/// the domain's dimension, inside it; direction not 0.
 std::optional<BedProfile> bed_profile(const Spheres<dynamic>&, const Domain&, const BedOptions& = {},
                                       const std::shared_ptr<const Container>& made = {});
 

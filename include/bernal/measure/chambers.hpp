@@ -53,8 +53,8 @@ struct ChamberOptions {
 ///
 /// In boxes, cylinders, spheres and convex meshes the places are convex: one chamber or none. In other meshes
 /// an octree is refined where the clearance, being 1-Lipschitz, does not decide a cell, and its finest cells
-/// are searched for a place; two places are connected if a chain of places joins them, see
-/// src/measure/free_space.hpp. Pockets much thinner than a cell can be missed, and a neck much thinner than a
+/// are searched for a place; two places are connected if a chain of places joins them.
+/// Pockets much thinner than a cell can be missed, and a neck much thinner than a
 /// cell can count as closed unless spheres are in it. A neck counts as open from 0.9999 r on, a short and
 /// sharp one from 0.99 r. The result is the same for any number of threads. Cost: 0.3 to 0.6 s of one core in
 /// a mesh of 10,000 triangles, 1 s in one of 100,000, plus a few µs a sphere; seconds if spheres are nearly

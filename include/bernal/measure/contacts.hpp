@@ -43,8 +43,8 @@ struct Contacts {
 /// domain's dimension. Throws Error{bad_argument} if the gap ratio is beyond ±1 or not a number.
 Contacts measure_contacts(const Spheres<dynamic>&, const Domain&, double contact_gap = 0.002);
 
-/// The same for several gap ratios, in their order, at the cost of the largest. `made`: see
-/// `local_container`.
+/// The same for several gap ratios, in their order, at the cost of the largest. `made`: as
+/// `MeasureOptions::container`.
 std::vector<Contacts> measure_contacts(const Spheres<dynamic>&, const Domain&,
                                        std::span<const double> contact_gaps,
                                        const std::shared_ptr<const Container>& made = {});

@@ -67,9 +67,9 @@ struct LocalPackingOptions {
 ///
 /// Cost: about 10 µs a sphere in one thread, with and without round walls, also for size ratios of ten.
 ///
-/// The result is the same for any number of threads. `made`: see `local_container`. Throws Cancelled, see
-/// core/monitor.hpp, if an interrupt requests it, and Error{bad_argument} for a domain with an inset. Source:
-/// Gellatly & Finney, J. Non-Cryst. Solids 50 (1982) 313.
+/// The result is the same for any number of threads. `made`: as `MeasureOptions::container`. Throws
+/// Cancelled, see core/monitor.hpp, if an interrupt requests it, and Error{bad_argument} for a domain with an
+/// inset. Source: Gellatly & Finney, J. Non-Cryst. Solids 50 (1982) 313.
 std::optional<LocalPacking> local_packing(const Spheres<dynamic>&, const Domain&,
                                           const LocalPackingOptions& = {},
                                           const std::shared_ptr<const Container>& made = {});

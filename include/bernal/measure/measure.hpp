@@ -59,7 +59,7 @@ struct MeasureOptions {
   LocalPackingOptions local = {};
   StructureOptions structure = {};
   PoreOptions pores = {};
-  /// Container of the domain in its own frame, see `local_container`; made if null and needed.
+  /// Container of the domain in its own frame, as `Packing` holds it; made if null and needed.
   std::shared_ptr<const Container> container = {};
   Monitor monitor = {};         ///< once it stops, optional measurements are left out
   bool all_or_nothing = false;  ///< once it stops, `measure` throws Cancelled

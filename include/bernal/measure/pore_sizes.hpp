@@ -46,8 +46,8 @@ struct PoreOptions {
 
 /// Absent without spheres or points, and between walls in other than two or three dimensions. The same domain
 /// gets the same points; the result is the same for any number of threads. Cost: about 1 µs a point, and 0.5
-/// µs a sphere for a tree. `made`: see `local_container`. Precondition: options positive. Source: Torquato,
-/// Random Heterogeneous Materials (2002), section 2.6, where d is called δ.
+/// µs a sphere for a tree. `made`: as `MeasureOptions::container`. Precondition: options positive. Source:
+/// Torquato, Random Heterogeneous Materials (2002), section 2.6, where d is called δ.
 std::optional<PoreSizes> pore_sizes(const Spheres<dynamic>&, const Domain&, const PoreOptions& = {},
                                     const std::shared_ptr<const Container>& made = {});
 

@@ -59,9 +59,9 @@ struct RestOptions {
 /// The search is independent of the lists and kernels that move spheres.
 ///
 /// Cost: O(N log N), about 4 µs a sphere, in threads, plus a wall query for spheres near walls; any size
-/// ratio. `made`: see `local_container`. Precondition: spheres of the domain's dimension, 2 or 3, inside it;
-/// `direction` not 0, in two dimensions in the plane z = 0. Throws Error{bad_argument} for a domain that is
-/// periodic along the direction or has no walls.
+/// ratio. `made`: as `MeasureOptions::container`. Precondition: spheres of the domain's dimension, 2 or 3,
+/// inside it; `direction` not 0, in two dimensions in the plane z = 0. Throws Error{bad_argument} for a
+/// domain that is periodic along the direction or has no walls.
 Rest measure_rest(const Spheres<dynamic>&, const Domain&, const Vector<3>& direction, const RestOptions& = {},
                   const std::shared_ptr<const Container>& made = {});
 

@@ -44,9 +44,9 @@ std::string inspection_as_json(const std::filesystem::path& file, std::string_vi
 std::string scene_reference_as_json();
 
 /// The same as a JSON Schema (2020-12) of a scene read as TOML: types, ranges, words, required and mutually
-/// exclusive keys, help and defaults; unknown keys are refused. What `bernal keys --schema` prints and
-/// data/schemas/scene.schema.json holds. Conditions on two values at once (min below max, as many shares as
-/// sizes, which stage works where) are not in it; `read_scene` and `build` check them.
+/// exclusive keys, help and defaults; unknown keys are refused. What `bernal keys --schema` prints.
+/// Conditions on two values at once (min below max, as many shares as sizes, which stage works where) are not
+/// in it; `read_scene` and `build` check them.
 std::string scene_schema_as_json();
 
 }  // namespace bernal

@@ -40,7 +40,7 @@ Scene scene_of_result(const std::filesystem::path& folder);
 bool is_unpublished(const std::filesystem::path& folder);
 
 /// What stands in scene.toml and spheres.csv, or spheres.npy, of a folder that `write_packing` made, or that
-/// has files of that form. How the run went is not among it: effects, history, seconds and version are empty;
+/// has files of that form. How the run went is not among it: effects, history, seconds and program are empty;
 /// the outcome says whether another program made it. Throws as `read_scene`, `packed_domain_of` and
 /// `read_csv_of` do.
 Packing read_packing(const std::filesystem::path& folder);

@@ -12,6 +12,7 @@
 #include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
 #include "bernal/scene/scene.hpp"
+#include "bernal/version.hpp"
 
 namespace bernal {
 
@@ -34,7 +35,7 @@ struct PlanItem {
   std::string what;  ///< one phrase
   std::string cost;  ///< "O(N)", "O(N log T)", …
   /// What it is expected to cost a run on one thread, by the stages' own models: three times in four within a
-  /// factor of two, see tests/bench/estimates_table. 0 where that is nothing or `if_needed`.
+  /// factor of two. 0 where that is nothing or `if_needed`.
   double seconds = 0, bytes = 0;
   bool part = false;       ///< its seconds are among those of another line, as in `Packing::effects`
   bool if_needed = false;  ///< it runs only where the others do not reach what is asked for
@@ -67,7 +68,7 @@ struct CheckpointOptions {
   /// Seconds between two, at least; more where writing takes more than a fiftieth of the time. One more is
   /// written when the monitor says stop.
   double every = 60;
-  /// Goes on from the latest of the same scene, seed and version, if there is one.
+  /// Goes on from the latest of the same scene, seed and packings number, if there is one.
   bool resume = false;
   /// Told in a sentence what people should know at once: that it goes on, or starts anew, or cannot write.
   std::function<void(const std::string&)> tell = {};
@@ -94,7 +95,7 @@ struct Packing {
   Scene scene;
   std::uint64_t seed = 1;
   int threads = 1;
-  std::string version;
+  Program program;  ///< that made it
   Outcome outcome = Outcome::converged;
   std::string reason;  ///< one sentence behind the outcome
   std::vector<Effect> effects;

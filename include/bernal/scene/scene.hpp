@@ -147,7 +147,7 @@ struct Scene {
   SceneSizes sizes;          ///< left at a Constant of 0 where those of the start are all there are
   bool sizes_are_diameters = false;
   /// Without it quantiles where a stage keeps the sizes in a container, and wherever few spheres carry much
-  /// of the volume, see `few_carry_volume`; else random.
+  /// of the volume; else random.
   std::optional<Draw> draw = {};
   Target target;
   Start start = {};

@@ -10,7 +10,7 @@ namespace bernal {
 struct ReferenceKey {
   std::string name;         ///< "alpha"
   std::string help;         ///< what it is, in a phrase
-  std::string type;         ///< "flag", "integer", "number", "length", "word", …: see src/scene/entry.hpp
+  std::string type;         ///< "flag", "integer", "number", "length", "word", …
   std::string expectation;  ///< what its value must be, for people: "a positive length"
   std::optional<std::string> otherwise = {};  ///< its default, as TOML; none where it may simply be absent
   double min = -std::numeric_limits<double>::infinity();  ///< of numbers and integers

@@ -40,8 +40,8 @@ struct PackedInSlabs {
 ///
 /// Writes spheres.npy, slab after slab along the longest axis, scene.toml and report.json, all or none. One
 /// seed gives one packing for any number of threads, as far as the engine does; another number of slabs gives
-/// another one. Throws what `engine::run_engine` does, Error{bad_scene} where the box is too narrow for so
-/// many slabs, Error{cannot_write}, and Cancelled once the monitor says stop: then nothing is written but
+/// another one. Throws EngineError where the engine fails, Error{bad_scene} where the box is too narrow for
+/// so many slabs, Error{cannot_write}, and Cancelled once the monitor says stop: then nothing is written but
 /// what the engine keeps.
 ///
 /// On the disk: 64 bytes a sphere, and some 180 in the engine's files; so much has to be free.

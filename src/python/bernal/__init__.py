@@ -24,6 +24,8 @@ from ._scene import Scene
 from ._work import explain, export, from_arrays, import_, inspect, measure, pack, predict, read, verify
 
 __version__ = str(_core.version)
+commit = str(_core.commit)
+packings_number = int(_core.packings_number)
 
 __all__ = [
     "Scene", "pack", "explain", "verify", "measure", "export", "read", "import_", "from_arrays", "inspect", "predict",

@@ -72,8 +72,8 @@ class Packing:
     """Spheres that were packed, read or imported; N of them in D dimensions, lengths in the scene's `unit`.
 
     `x`, `y`, `z`, `radii` and `columns` are read-only arrays over the library's memory, without a copy, and keep it
-    alive. Packings pickle with all that they hold, for other processes of this version of
-    bernal; files keep them for longer, see `write`.
+    alive. Packings pickle with all that they hold, for other processes with the same
+    `bernal.packings_number`; files keep them for longer, see `write`.
     """
 
     _core: Any
@@ -199,6 +199,11 @@ class Packing:
     def reason(self) -> str:
         """One sentence that explains the outcome."""
         return str(self._core.reason)
+
+    @property
+    def program(self) -> str:
+        """Which bernal packed it, such as "0.2.0 (packings 25, commit 0123456789ab)"; empty if it was read."""
+        return str(self._core.program)
 
     @property
     def seed(self) -> int:

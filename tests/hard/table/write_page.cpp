@@ -122,25 +122,22 @@ int main(int count, char** arguments) {
         rows;
   std::FILE* file = std::fopen(arguments[1], "w");
   if (!file) return fmt::print(stderr, "cannot write {}: {}\n", arguments[1], std::strerror(errno)), 2;
-  fmt::print(file,
-             "# Hard cases\n\n"
-             "Written by `tests/hard/table/write`; asserted, row by row, by `ctest -R hard/` and, with the "
-             "rows that take long and at every level of arithmetic, by `ctest --preset slow`.\n\n"
-             "{} cases. {} end with what was asked for, {} with less and the reason, {} are refused before "
-             "anything is packed; "
-             "{} end otherwise than they must. A case with walls is packed at each level of arithmetic for "
-             "walls (`double`, `filtered`, "
-             "`exact`): {} runs in all, {:.0f} s on one thread. Every packing is certified in exact "
-             "arithmetic and checked again by a "
-             "program of two pages that knows nothing but doubles (`tests/support/plain_check.hpp`).\n\n"
-             "The numbers after the count of spheres are packing fractions. *Largest overlap*: (ri + rj - d) "
-             "/ (ri + rj) of the worst "
-             "pair, its sign decided exactly; negative: the spheres are so far apart. *Smallest gap to a "
-             "wall*: in radii, its sign "
-             "decided exactly. —: no pair is near, no sphere near a wall. *Seconds*: to read, build and run, "
-             "at the three levels.\n{}",
-             page.cases, page.packed, page.short_of, page.refused, page.wrong, page.ends, page.seconds,
-             page.rows);
+  fmt::print(
+      file,
+      "# Hard cases\n\n"
+      "Written by `tests/hard/table/write`. `ctest -R hard/` tests each row; `ctest --preset slow` tests "
+      "also the rows that take long, at every level of arithmetic.\n\n"
+      "{} cases. {} end with what was asked for, {} with less and the reason, {} are refused before "
+      "anything is packed; "
+      "{} end in any other way. A case with walls is packed at each level of arithmetic for walls "
+      "(`double`, `filtered`, `exact`): {} runs in all, {:.0f} s on one thread. Every packing is "
+      "certified in exact arithmetic, and checked again by a second program of two pages in plain "
+      "double precision (`tests/support/plain_check.hpp`).\n\n"
+      "The numbers after the count of spheres are packing fractions. *Largest overlap*: (ri + rj - d) "
+      "/ (ri + rj) of the worst pair; if it is negative, the spheres are that far apart. *Smallest gap "
+      "to a wall*: in radii. The signs of both are decided exactly. —: no two spheres are near each "
+      "other, or no sphere is near a wall. *Seconds*: to read, build and run, at the three levels.\n{}",
+      page.cases, page.packed, page.short_of, page.refused, page.wrong, page.ends, page.seconds, page.rows);
   std::fclose(file);
   return page.wrong > 0;
 }
