@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/core/unit.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
@@ -42,13 +44,23 @@ struct PackCall {
   double checkpoint_every = CheckpointOptions().every;  ///< seconds; 0: none
 };
 
+/// The unit that a CAD file says of itself, as those of STEP, IGES, 3MF, AMF and glTF do. Cost: reads the file.
+Unit unit_of_file(const std::filesystem::path& file) {
+  const MeshReport report = read_mesh(MeshFile{file}).report;
+  for (const std::string_view name : unit_names())
+    if (std::abs(metres_per(unit_named(name)) / report.metres - 1) < 1e-9) return unit_named(name);
+  const Vector<3> size = report.bounds.size();
+  throw Error(ErrorCode::bad_argument,
+              fmt::format("the file does not say its unit; it is {:.4g} × {:.4g} × {:.4g} units large: give the "
+                          "unit of these and of all lengths, such as --unit mm",
+                          size.x(), size.y(), size.z()),
+              {file.string()});
+}
+
 /// The scene that the flags stand for.
 Scene scene_of_flags(const PackCall& call) {
   Scene scene;
-  if (call.unit.empty())
-    throw Error(ErrorCode::bad_argument,
-                "give the unit of the mesh and of all lengths too, such as --unit mm");
-  scene.unit = unit_named(call.unit);
+  scene.unit = call.unit.empty() ? unit_of_file(call.scene) : unit_named(call.unit);
   scene.container = MeshFile{call.scene};
   scene.sizes_are_diameters = true;
   if (call.diameter)
@@ -183,7 +195,8 @@ Command pack_command() {
             scene_and_mesh_endings()),
        folder({"-o,--output", &call->folder,
                "Folder for the results; made if it does not exist; named after the scene if absent", "DIR"}),
-       with_units({"--unit", &call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft", "UNIT"}),
+       with_units({"--unit", &call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft; a file that says its own needs none",
+                   "UNIT"}),
        {"--diameter", &call->diameter, "Of every sphere in a mesh", "D"},
        excludes(
            list_of(2, {"--lognormal", &call->lognormal, "Lognormal diameters in a mesh", "MEDIAN,SIGMA"}),

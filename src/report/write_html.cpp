@@ -56,9 +56,9 @@ void write_headline(Page& page, const Report& report) {
   page.card(grouped(packing.spheres.size()), "Spheres",
             fmt::format("{}: {}", name_of(packing.outcome), escaped(packing.reason)));
   page.card(fmt::format("{:.4f}", packing.packing_fraction()), "Packing fraction",
-            fmt::format("the share of the {}’s {} that is sphere{}",
+            fmt::format("the share of the {}’s {} that is sphere, so that its porosity is {:.4f}{}",
                         kind_of(packing.domain) == "periodic" ? "box" : "container", volume_word(packing),
-                        expected_text(packing)));
+                        1 - packing.packing_fraction(), expected_text(packing)));
   if (const auto& bed = report.measured.bed)
     page.card(fmt::format("{:.3f}", bed->porosity), "Porosity of the bed",
               fmt::format("up to its surface, {:.4g} {} high; {}", bed->height,

@@ -96,6 +96,27 @@ TEST(Pack, AMeshNeedsNoScene) {
   expect_refused_in_one_line(bernal_in(folder, "pack again.toml --unit mm"), {"--unit is for a mesh"});
 }
 
+TEST(Pack, AFileThatSaysItsUnitNeedsNone) {
+  const Folder folder;
+  folder.write("cube.amf",
+               R"(<amf unit="inch"><object id="0"><mesh><vertices>
+<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>
+<vertex><coordinates><x>2</x><y>0</y><z>0</z></coordinates></vertex>
+<vertex><coordinates><x>0</x><y>2</y><z>0</z></coordinates></vertex>
+<vertex><coordinates><x>0</x><y>0</y><z>2</z></coordinates></vertex></vertices><volume>
+<triangle><v1>0</v1><v2>2</v2><v3>1</v3></triangle><triangle><v1>0</v1><v2>1</v2><v3>3</v3></triangle>
+<triangle><v1>0</v1><v2>3</v2><v3>2</v3></triangle><triangle><v1>1</v1><v2>2</v2><v3>3</v3></triangle>
+</volume></mesh></object></amf>)");
+  const Ended packed = bernal_in(folder, "pack cube.amf --diameter 0.2");
+  EXPECT_EQ(packed.status, 0) << packed.err;
+  EXPECT_EQ(report_of(folder / "cube")["unit"], "in");
+  EXPECT_NEAR(report_of(folder / "cube")["volume"].get<double>(), 8.0 / 6, 1e-12);
+
+  std::filesystem::copy(BERNAL_DATA "/meshes/hopper.stl", folder / "hopper.stl");
+  expect_refused_in_one_line(bernal_in(folder, "pack hopper.stl --diameter 30"),
+                             {"hopper.stl", "does not say its unit", "units large", "such as --unit mm"});
+}
+
 TEST(Pack, QuietSaysNothing) {
   const Folder folder;
   const Ended packed = bernal(
