@@ -39,7 +39,7 @@ class OfATree(unittest.TestCase):
         self.parts = [
             Part("good", count + "good", "reads all"),
             Part("bad", count + "bad; echo '\t 12 - unit/That (Failed)'; exit 8", "fails"),
-            Part("left", count + "left; exit 77", "cannot be tried here"),
+            Part("left", count + "left; echo [--install]; exit 77", "cannot be tried here"),
             *everything.pieces(2, Part("cut", count + "cut; echo", "reads code", ("code",))),
         ]
 
@@ -73,6 +73,10 @@ class OfATree(unittest.TestCase):
             self.assertRegex(table, rf"(?m)^\| {row} \|")
         log = self.root / "build/everything/logs/cut-2.log"
         self.assertEqual(log.read_text(), "-I 2,,2\n")
+        log = self.root / "build/everything/logs/left.log"
+        self.assertEqual(log.read_text(), "\n")
+        self.run_parts("--install", "left")
+        self.assertEqual(log.read_text(), "--install\n")
 
     def test_what_has_passed_stands_until_what_it_reads_is_changed(self):
         self.run_parts()
@@ -138,6 +142,7 @@ class OfThisTree(unittest.TestCase):
         commands = " ".join(part.command for part in everything.PARTS).split()
         elsewhere = {"apps/reproduce",                                        # tests/papers
                      "cmake/install-debian-packages", "cmake/package",        # tests/run
+                     "cmake/release",                                         # tests/packages/run --release
                      "tests/everything"}
         self.assertEqual(scripts - set(commands) - elsewhere, set())
         self.assertEqual(elsewhere - scripts, set())
