@@ -5,13 +5,12 @@
 #include <vector>
 
 #include "bernal/scene/read_scene.hpp"
-#include "bernal/version.hpp"
 
 namespace bernal {
 
 CheckpointOwner checkpoint_owner(const Scene& scene, std::uint64_t seed) {
   CheckpointOwner owner;
-  owner.version = version();
+  owner.program = this_program();
   owner.seed = seed;
   Scene bare = scene;
   bare.seed = 1;

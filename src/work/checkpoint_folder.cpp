@@ -26,9 +26,9 @@ constexpr const char* folder_name = ".bernal-checkpoint";
 constexpr const char* latest = "latest";
 constexpr const char* before_it = "before";
 constexpr const char* not_whole_yet = "new";
-/// Another number whenever what stands here is laid out in another way; what stages write is told apart by
-/// the program's version.
-constexpr char format[] = "bernal checkpoint 2\n";
+/// Another number whenever what stands here is laid out in another way. What stages write is told apart by
+/// the packings number, and where that is the same, by its layout (`Archive::check_layout`).
+constexpr char format[] = "bernal checkpoint 3\n";
 constexpr std::size_t word = sizeof(std::uint64_t), block_bytes = std::size_t{1} << 20;
 constexpr std::size_t end_bytes = 2 * word;
 
@@ -181,11 +181,10 @@ class FileReader final : public Archive {
 
 [[noreturn]] void refuse_other(const fs::path& folder, const CheckpointOwner& here,
                                const CheckpointOwner& there) {
-  if (there.version != here.version)
+  if (there.program.packings_number != here.program.packings_number)
     refuse(folder,
-           fmt::format("holds a checkpoint of bernal {}, and this is {}: go on with that one, or leave "
-                       "‹resume› out to start anew",
-                       there.version, here.version));
+           fmt::format("holds a checkpoint of {}: go on with that one, or leave ‹resume› out to start anew",
+                       beside_this(there.program)));
   if (there.scene != here.scene)
     refuse(folder,
            "holds a checkpoint of another scene: name its scene or another folder, or leave ‹resume› out to "
@@ -203,6 +202,12 @@ class FileReader final : public Archive {
 
 CheckpointFolder::CheckpointFolder(const fs::path& result) : folder_(result / folder_name) {}
 
+CheckpointFolder::~CheckpointFolder() {
+  std::error_code ignored;  // as where there is something in it
+  if (!lock_.of().is_open() || !fs::remove(folder_, ignored)) return;
+  if (made_result_) fs::remove(folder_.parent_path(), ignored);
+}
+
 /// Returns false where another process has it. Where file systems know no locks everybody has it.
 bool CheckpointFolder::hold() {
   if (lock_.of().is_open()) return true;
@@ -214,13 +219,19 @@ bool CheckpointFolder::hold() {
   return true;
 }
 
-void CheckpointFolder::write(CheckpointOwner& owner, const std::function<void(Archive&)>& write) {
+bool CheckpointFolder::claim() {
   std::error_code problem;
+  made_result_ = made_result_ || !fs::exists(folder_.parent_path(), problem);
   fs::create_directories(folder_, problem);
   if (problem)
     throw Error(ErrorCode::cannot_write, "no checkpoint can be written: " + problem.message(),
                 {folder_.string()});
-  if (!hold())
+  return hold();
+}
+
+void CheckpointFolder::write(CheckpointOwner& owner, const std::function<void(Archive&)>& write) {
+  std::error_code problem;
+  if (!claim())
     throw Error(ErrorCode::cannot_write,
                 "no checkpoint can be written: another run with the same folder writes its own there",
                 {folder_.string()});
@@ -242,10 +253,11 @@ void CheckpointFolder::write(CheckpointOwner& owner, const std::function<void(Ar
   ::fsync(lock_.of().number());
 }
 
-std::unique_ptr<Archive> CheckpointFolder::open(const CheckpointOwner& owner, std::string& note) {
-  if (!stands_in(folder_.parent_path())) return nullptr;
-  if (!hold())
-    refuse(folder_, "another run is at work with the checkpoint in this folder: wait until it has ended");
+std::unique_ptr<Archive> CheckpointFolder::open(const CheckpointOwner& owner, std::string& note,
+                                                Program& by) {
+  std::error_code problem;
+  if (!fs::is_directory(fs::symlink_status(folder_, problem))) return nullptr;
+  if (!hold()) refuse(folder_, "another run is at work in this folder: wait until it has ended");
   for (const char* name : {latest, before_it}) {
     auto file = std::make_unique<FileReader>(folder_ / name);
     std::error_code unknown;
@@ -259,10 +271,15 @@ std::unique_ptr<Archive> CheckpointFolder::open(const CheckpointOwner& owner, st
     (*file)(found);
     if (std::memcmp(found, format, sizeof format) != 0)
       refuse(folder_,
-             "holds a checkpoint that this version of bernal cannot read: leave ‹resume› out to start "
-             "anew");
+             fmt::format("holds a checkpoint of {}: go on with that one, or leave ‹resume› out to start anew",
+                         std::string_view(found, sizeof found) < format
+                             ? beside_this({"0.1", "", 0})
+                             : "a later bernal, and this is " + text_of(owner.program)));
     (*file)(there);
-    if (!(there == owner)) refuse_other(folder_, owner, there);
+    if (there.program.packings_number != owner.program.packings_number || there.scene != owner.scene ||
+        there.files != owner.files || there.seed != owner.seed)
+      refuse_other(folder_, owner, there);
+    by = there.program;
     return file;
   }
   return nullptr;
@@ -270,11 +287,14 @@ std::unique_ptr<Archive> CheckpointFolder::open(const CheckpointOwner& owner, st
 
 bool CheckpointFolder::stands_in(const fs::path& result) {
   std::error_code unknown;
-  return fs::is_directory(fs::symlink_status(result / folder_name, unknown));
+  return std::ranges::any_of(std::initializer_list<const char*>{latest, before_it}, [&](const char* name) {
+    return fs::symlink_status(result / folder_name / name, unknown).type() != fs::file_type::not_found;
+  });
 }
 
 void CheckpointFolder::remove_from(const fs::path& result) {
-  if (!stands_in(result)) return;
+  std::error_code unknown;
+  if (!fs::is_directory(fs::symlink_status(result / folder_name, unknown))) return;
   try {
     CheckpointFolder own(result);
     if (!own.hold()) return;

@@ -29,15 +29,24 @@ Checkpoints::Checkpoints(const Monitor& monitor, const CheckpointOptions& option
       seconds_between_(options.every) {
   if (options.folder.empty()) return;
   folder_ = std::make_unique<CheckpointFolder>(options.folder);
+  bool is_ours = true;
+  try {
+    is_ours = folder_->claim();
+  } catch (const Error&) {  // that is told of once there is something to write
+  }
   if (!options.resume) {
-    if (CheckpointFolder::stands_in(options.folder))
+    complained_ = !is_ours;
+    if (!is_ours)
+      tell(options_, fmt::format("another run is at work in {}: this one keeps no checkpoints",
+                                 options.folder.string()));
+    else if (CheckpointFolder::stands_in(options.folder))
       tell(options_, fmt::format("a run that was ended left a checkpoint in {}, which this one will replace; "
                                  "‹resume› would go on from it",
                                  options.folder.string()));
     return;
   }
   std::string note;
-  source_ = folder_->open(owner_, note);
+  source_ = folder_->open(owner_, note, by_);
   if (!note.empty()) tell(options_, note);
   if (!source_) {
     tell(options_,
@@ -68,12 +77,27 @@ void Checkpoints::go_on(Part& part) {
                 fmt::format("a checkpoint goes on with \"{}\" where this run has \"{}\", which is a bug of "
                             "bernal; leave ‹resume› out to start anew",
                             name, part.name_));
-  part.state_(*source_);
+  take(part.state_);
   part.resumed_ = true;
   if (--to_come_ > 0) return;
-  rest_(*source_);
+  take(rest_);
   source_ = nullptr;
   last_ = Clock::now();
+}
+
+void Checkpoints::take(const std::function<void(Archive&)>& state) {
+  try {
+    state(*source_);
+    source_->check_layout();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_packing) throw;
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("holds a checkpoint of bernal {}, which keeps other things of a run than this one, "
+                    "{}: go on with that one, or leave ‹resume› out to start anew",
+                    text_of(by_), text_of(owner_.program)),
+        {options_.folder.string()});
+  }
 }
 
 bool Checkpoints::due() {
@@ -104,8 +128,10 @@ void Checkpoints::write() {
         std::string name = part->name_;
         archive(name);
         part->state_(archive);
+        archive.check_layout();
       }
       rest_(archive);
+      archive.check_layout();
     });
   } catch (const Error& error) {
     if (error.code() != ErrorCode::cannot_write) throw;

@@ -86,6 +86,7 @@ class Checkpoints {
   bool due();
   void begin(Part& part);
   void go_on(Part& part);
+  void take(const std::function<void(Archive&)>& state);
 
   const Monitor& monitor_;
   CheckpointOptions options_;
@@ -94,6 +95,7 @@ class Checkpoints {
   std::unique_ptr<CheckpointFolder> folder_;  // null: none is written
   std::vector<Part*> parts_;                  // that live, the outermost first
   std::unique_ptr<Archive> source_;           // while parts take their states
+  Program by_;                                // that wrote it
   std::uint32_t to_come_ = 0;                 // parts in it
   int paused_ = 0;
   bool ended_ = false, complained_ = false;

@@ -91,5 +91,21 @@ TEST(Resume, RefusesWhatBelongsToAnotherRunAndTouchesNothing) {
   EXPECT_FALSE(std::filesystem::exists(out / ".bernal-checkpoint"));
 }
 
+/// The first has written no checkpoint yet, and will not for long.
+TEST(Resume, RefusesASecondRunFromTheBeginningOfTheFirst) {
+  const Folder folder;
+  const std::string scene = folder.write("scene.toml", long_scene);
+  const std::filesystem::path out = folder / "out";
+  const Process first = start_bernal({"pack", scene, "-o", out, "--checkpoint-every", "1000"});
+  while (!std::filesystem::exists(out / ".bernal-checkpoint") && first.listens_to(SIGTERM))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  // The folder is locked a moment after it is made.
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  expect_refused(bernal({"pack", scene, "-o", out, "--resume"}), {"another run is at work", "out"});
+  EXPECT_FALSE(std::filesystem::exists(out / ".bernal-checkpoint" / "latest"));
+  first.signal(SIGTERM);
+  EXPECT_EQ(first.wait().status, 3);
+}
+
 }  // namespace resume_test
 }  // namespace bernal::testing
