@@ -72,6 +72,7 @@ void print_json(const CostReport& report) {
                                        {"phi_step", report.phi_step},
                                        {"runs_made", report.runs_made},
                                        {"runs_kept", report.runs_kept},
+                                       {"outdated", report.outdated},
                                        {"complete", report.complete},
                                        {"ending", report.ending},
                                        {"refused", report.refused},
@@ -88,6 +89,7 @@ void print_words(const CostReport& report, bool quiet) {
     say(stderr, "measured   {} settings, {} on the front; {} runs, {} of them known before\n",
         report.rows.size(), on_front, report.runs_made + report.runs_kept, report.runs_kept);
     say(stderr, "           {}\n", report.ending);
+    if (!report.outdated.empty()) say(stderr, "again      {}\n", report.outdated);
     for (const std::string& refused : report.refused) say(stderr, "refused    {}\n", refused);
     for (const std::string& verdict : report.verdicts) say(stderr, "{}\n", verdict);
     say(stderr, "advice     {}\n", report.recommendation);

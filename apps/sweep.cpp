@@ -133,6 +133,7 @@ void print_sweep_json(const Sweep& sweep, const SweepReport& report) {
                                        {"jobs", report.jobs},
                                        {"threads", report.threads},
                                        {"distrusted", report.distrusted.size()},
+                                       {"outdated", report.outdated.size()},
                                        {"done", report.is_done()},
                                        {"stopped", report.cancelled},
                                        {"files", files}};
@@ -153,6 +154,9 @@ void print_sweep_words(const Sweep& sweep, const SweepReport& report) {
   if (report.ran > 0)
     say(stderr, "ran        {} of them now, {} at a time on {} thread{} each\n", grouped(report.ran),
         report.jobs, report.threads, report.threads == 1 ? "" : "s");
+  if (!report.outdated.empty())
+    say(stderr, "again      {} of other packings; of the first: {}\n", grouped(report.outdated.size()),
+        plain_text(report.outdated.front().result.reason, 400));
   if (!report.distrusted.empty())
     say(stderr, "again      {} that were there and not as they were written\n",
         grouped(report.distrusted.size()));

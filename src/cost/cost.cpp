@@ -33,6 +33,13 @@ CostReport measure_cost(const Scene& scene, const std::filesystem::path& folder,
   std::filesystem::create_directories(folder, failed);
   if (failed) throw Error(ErrorCode::cannot_write, "cannot be made: " + failed.message(), {folder.string()});
   TrialRecord record(record_file, options.fresh);
+  std::string outdated;
+  if (record.outdated() > 0)
+    outdated = fmt::format(
+        "{} run{} in trials.csv {} of packings {}, and this is bernal {}: what is needed of "
+        "them is made anew",
+        record.outdated(), record.outdated() == 1 ? "" : "s", record.outdated() == 1 ? "is" : "are",
+        record.packings_of_outdated(), text_of(this_program()));
   const std::filesystem::path whole_folder = std::filesystem::absolute(folder).lexically_normal();
   std::vector<Knob> knobs = knobs_of(subject, whole_folder, record);
   rest.seconds = std::max(1e-3, options.seconds - watch.seconds());
@@ -51,6 +58,7 @@ CostReport measure_cost(const Scene& scene, const std::filesystem::path& folder,
                             "scene fewer spheres",
                             seconds_in_words(options.seconds)));
   CostReport report = report_of(search, whole_folder);
+  report.outdated = outdated;
   std::size_t runs = 0;
   for (const CostRow& row : report.rows) runs += static_cast<std::size_t>(row.runs);
   report.runs_kept = runs - std::min(runs, report.runs_made);

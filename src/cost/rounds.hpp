@@ -21,7 +21,7 @@ struct Setting {
 };
 
 /// The trials that were made, in a file that grows by a line with each of them, so that nothing measured is
-/// lost. A trial is known by the text of its scene, its seed, the number of threads and the version.
+/// lost. A trial is known by the text of its scene, its seed, the number of threads and the packings number.
 ///
 /// Beside the trials it names the files that were written from them, each with its digest, so that a later
 /// call tells these from files of somebody else.
@@ -41,6 +41,10 @@ class TrialRecord {
   /// One that was cut off gives way to one that was not, or was later.
   void add(const Setting&, const Trial&);
   std::size_t size() const { return trials_.size(); }
+  /// Trials of bernals with other packings that are not made anew yet; none of them is found.
+  std::size_t outdated() const { return outdated_.size(); }
+  /// The packings number of one of them. Precondition: there are some.
+  int packings_of_outdated() const { return outdated_.begin()->second.packings_number; }
 
   /// Files in the folder of the record.
   void add_file(const std::string& name, const std::string& sha256);
@@ -53,7 +57,7 @@ class TrialRecord {
   void append(const std::string& text) const;
 
   std::filesystem::path file_;
-  std::map<std::string, Trial> trials_;
+  std::map<std::string, Trial> trials_, outdated_;
   std::set<std::pair<std::string, std::string>> written_;  ///< names and digests
 };
 

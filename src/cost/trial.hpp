@@ -17,6 +17,7 @@ namespace bernal::cost {
 struct Trial {
   std::uint64_t seed = 1;
   int threads = 1;
+  int packings_number = bernal::packings_number();  ///< of the bernal that ran it
   Outcome outcome = Outcome::cancelled;
   std::string reason;
   bool cut_off = false;  ///< it reached `TrialOptions::limit`: all that is known is that it is slower

@@ -19,10 +19,11 @@ namespace bernal::cost {
 namespace {
 
 constexpr std::string_view header =
-    "key,setting,seed,threads,outcome,reason,cut_off,spheres,packing_fraction,packed_fraction,size_scale,"
-    "certified,max_overlap,early_overlap,protrusion,wall_gap,held_from,contact_ratio,rattlers,coordination,"
+    "key,setting,seed,threads,packings_number,outcome,reason,cut_off,spheres,packing_fraction,"
+    "packed_fraction,size_scale,certified,max_overlap,early_overlap,protrusion,wall_gap,held_from,contact_"
+    "ratio,rattlers,coordination,"
     "hash,seconds,cpu_seconds,prepare_seconds,peak_bytes,effects,seal";
-constexpr std::size_t columns = 27;
+constexpr std::size_t columns = 28;
 /// With which the record of any version begins.
 constexpr std::string_view begin_of_header = "key,setting,seed,threads,";
 /// Of a line that names a file and its digest.
@@ -138,12 +139,12 @@ std::string seal_of(std::string_view line) { return hash_of_text(line); }
 std::string line_of(const std::string& key, const std::string& name, const Trial& t) {
   const auto flag = [](bool value) { return value ? "yes" : "no"; };
   std::string line = fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", key, in_quotes(name),
-      t.seed, t.threads, name_of(t.outcome), in_quotes(t.reason), flag(t.cut_off), t.spheres,
-      t.packing_fraction, t.packed_fraction, t.size_scale, flag(t.certified), t.max_overlap, t.early_overlap,
-      t.protrusion, text_of(t.wall_gap), text_of(t.held_from), text_of(t.contact_ratio), t.rattlers,
-      t.coordination, t.hash, t.seconds, t.cpu_seconds, t.prepare_seconds, text_of(t.peak_bytes),
-      in_quotes(text_of(t.effects)));
+      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", key,
+      in_quotes(name), t.seed, t.threads, t.packings_number, name_of(t.outcome), in_quotes(t.reason),
+      flag(t.cut_off), t.spheres, t.packing_fraction, t.packed_fraction, t.size_scale, flag(t.certified),
+      t.max_overlap, t.early_overlap, t.protrusion, text_of(t.wall_gap), text_of(t.held_from),
+      text_of(t.contact_ratio), t.rattlers, t.coordination, t.hash, t.seconds, t.cpu_seconds,
+      t.prepare_seconds, text_of(t.peak_bytes), in_quotes(text_of(t.effects)));
   return line + seal_of(line) + '\n';
 }
 
@@ -160,6 +161,7 @@ Trial trial_of(Cells& cells) {
   Trial t;
   t.seed = cells.number<std::uint64_t>();
   t.threads = static_cast<int>(cells.number(1, 1e6));
+  t.packings_number = static_cast<int>(cells.number(0, 1e9));
   t.outcome = cells.outcome();
   t.reason = cells.text();
   t.cut_off = cells.flag();
@@ -189,7 +191,7 @@ std::string key_of(const Scene& stated, const bool stands_for_another) {
   Scene scene = stated;
   scene.seed = 0;
   complete(scene);
-  return hash_of_text(scene_as_toml(scene) + std::string(version()) + (stands_for_another ? "*" : ""));
+  return hash_of_text(scene_as_toml(scene) + (stands_for_another ? "*" : ""));
 }
 
 std::string key_of_trial(const std::string& key, std::uint64_t seed, int threads) {
@@ -278,7 +280,9 @@ std::size_t TrialRecord::read_whole(const std::string& whole, bool afresh) {
     if (number == 1 && line != header && !(afresh && line.starts_with(begin_of_header)))
       throw Error(ErrorCode::bad_argument,
                   line.starts_with(begin_of_header)
-                      ? "is the record of another version; give ‹fresh›, or name another ‹folder›"
+                      ? fmt::format("is the record of another bernal, which keeps other things of a run than "
+                                    "this one, {}; give ‹fresh›, or name another ‹folder›",
+                                    text_of(this_program()))
                       : "is no record of trials; remove it, or name another folder",
                   here);
     if (number == 1) continue;
@@ -295,11 +299,14 @@ std::size_t TrialRecord::read_whole(const std::string& whole, bool afresh) {
       const std::string key = cells.text();
       cells.text();  // the name that the setting had
       const Trial trial = trial_of(cells);
-      trials_[key_of_trial(key, trial.seed, trial.threads)] = trial;
+      (trial.packings_number == packings_number() ? trials_
+                                                  : outdated_)[key_of_trial(key, trial.seed, trial.threads)] =
+          trial;
     } catch (const Error& error) {
       throw Error(error.code(), error.what(), here);
     }
   }
+  std::erase_if(outdated_, [&](const auto& trial) { return trials_.contains(trial.first); });
   return end;
 }
 

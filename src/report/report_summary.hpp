@@ -3,11 +3,14 @@
 #include <optional>
 #include <string>
 
+#include "bernal/version.hpp"
+
 namespace bernal {
 
 /// The main figures of a report.json.
 struct ReportSummary {
-  std::string version, outcome, reason, hash, cell;
+  Program program;
+  std::string outcome, reason, hash, cell;
   std::optional<std::size_t> n, rattlers;
   std::optional<double> phi, coordination, max_overlap, min_wall_gap, seconds, peak_memory_bytes;
   bool certified = false;

@@ -24,7 +24,8 @@ std::optional<ReportSummary> summary_of_report(const std::string& report) {
   if (!json.is_object() || !json.contains("certificate") || !json.contains("hash")) return {};
   const auto certified = json.find("certified");
   return ReportSummary{
-      .version = text_in(json, "version"),
+      .program = {text_in(json, "version"), text_in(json, "commit"),
+                  number_in<int>(json, "packings_number").value_or(0)},
       .outcome = text_in(json, "outcome"),
       .reason = text_in(json, "reason"),
       .hash = text_in(json, "hash"),

@@ -42,7 +42,7 @@ void take_report(const ReportSummary& report, CellResult& result) {
   result.peak_memory_bytes = report.peak_memory_bytes;
   result.certified = report.certified;
   result.hash = report.hash;
-  result.version = report.version;
+  result.program = report.program;
 }
 
 /// What is wrong with a report or the files beside it; empty where they are those that it describes.
@@ -67,9 +67,20 @@ std::string complaint_about(const fs::path& folder, const std::string& cell, con
   }
 }
 
+/// Whether a result is of the packings that this bernal makes; else the cell is missing, and why is said.
+bool is_of_our_packings(const Program& by, CellResult& result) {
+  if (by.packings_number == packings_number()) return true;
+  result.program = by;
+  result.reason = "it was made by " + beside_this(by);
+  return false;
+}
+
 void take_failure(const fs::path& file, CellResult& result) {
   try {
     const toml::table failure = toml::parse_file(file.string());
+    const Program by{failure["version"].value_or(std::string("0.1")),
+                     failure["commit"].value_or(std::string()), failure["packings_number"].value_or(0)};
+    if (!is_of_our_packings(by, result)) return;
     const auto state = failure["outcome"].value<std::string>();
     const auto exit_code = failure["exit_code"].value<std::int64_t>();
     if (!state || !exit_code || *exit_code < 0 || *exit_code > 255) return;
@@ -92,6 +103,7 @@ CellResult read_cell(const fs::path& folder, const std::string& hash) {
   if (!fs::is_directory(there, unknown)) return result;
   const std::string report = bytes_of_file(where_it_stands(there / "report.json"));
   if (const auto summary = summary_of_report(report)) {
+    if (!is_of_our_packings(summary->program, result)) return result;
     result.reason = complaint_about(there, hash, report, *summary);
     if (result.reason.empty()) take_report(*summary, result);
   } else if (fs::is_regular_file(there / failure_name, unknown)) {
@@ -128,9 +140,12 @@ void replace_file(const fs::path& file, const std::string& text) {
 
 void write_failure(const fs::path& folder, const std::string& hash, const Failure& failure) {
   const bool refused = failure.state == CellResult::State::refused;
-  replace_file(folder / folder_of_cell(hash) / failure_name,
-               fmt::format("outcome = \"{}\"\nexit_code = {}\nreason = {}\n", refused ? "refused" : "crashed",
-                           failure.exit_code, toml_string(plain_text(failure.reason, 1000))));
+  replace_file(
+      folder / folder_of_cell(hash) / failure_name,
+      fmt::format("outcome = \"{}\"\nexit_code = {}\nreason = {}\nversion = \"{}\"\ncommit = \"{}\"\n"
+                  "packings_number = {}\n",
+                  refused ? "refused" : "crashed", failure.exit_code,
+                  toml_string(plain_text(failure.reason, 1000)), version(), commit(), packings_number()));
 }
 
 void remove_failure(const fs::path& folder, const std::string& hash) {

@@ -43,10 +43,9 @@ std::string text_of(const std::optional<Number>& value) {
 
 void refuse_foreign(const fs::path& file, bool is_ours) {
   if (stands(file) && !is_ours)
-    throw Error(
-        ErrorCode::cannot_write,
-        "is not as bernal sweep wrote it, and would be replaced; remove it, or give another ‹folder›",
-        {file.string()});
+    throw Error(ErrorCode::cannot_write,
+                "is not as bernal sweep wrote it, and would be replaced; remove it, or give another ‹folder›",
+                {file.string()});
 }
 
 bool is_regular(const fs::path& file) {
@@ -66,9 +65,11 @@ bool is_table_of_ours(const fs::path& file) {
 
 const std::vector<std::string_view>& result_columns() {
   static const std::vector<std::string_view> columns = {
-      "folder",   "outcome",     "exit_code",    "n",         "phi",     "coordination",
-      "rattlers", "max_overlap", "min_wall_gap", "certified", "seconds", "peak_memory_bytes",
-      "hash",     "version",     "reason"};
+      "folder",       "outcome",      "exit_code", "n",
+      "phi",          "coordination", "rattlers",  "max_overlap",
+      "min_wall_gap", "certified",    "seconds",   "peak_memory_bytes",
+      "hash",         "version",      "commit",    "packings_number",
+      "reason"};
   return columns;
 }
 
@@ -88,7 +89,10 @@ std::string value_in(const SweepRow& row, std::string_view column) {
   if (column == "peak_memory_bytes")
     return r.peak_memory_bytes ? fmt::format("{:.0f}", *r.peak_memory_bytes) : "";
   if (column == "hash") return r.hash;
-  if (column == "version") return r.version;
+  if (column == "version") return r.program.version;
+  if (column == "commit") return r.program.commit;
+  if (column == "packings_number")
+    return r.program.packings_number > 0 ? fmt::format("{}", r.program.packings_number) : "";
   return r.reason;
 }
 

@@ -60,7 +60,7 @@ class Pool {
       if (!is_to_be_run(k)) continue;
       sweep::require_no_links(folder_, row(k).cell_hash);
       if (row(k).result.state == CellResult::State::missing && !row(k).result.reason.empty())
-        report_.distrusted.push_back(row(k));
+        (row(k).result.program.version.empty() ? report_.distrusted : report_.outdated).push_back(row(k));
       queue_.push_back(k);
     }
     share_machine(checked.most_memory);

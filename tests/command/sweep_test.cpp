@@ -1,5 +1,6 @@
 // bernal sweep as users call it, once.
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <string>
 
@@ -168,6 +169,52 @@ TEST(SweepCommand, TheExamplesAreSweeps) {
     EXPECT_EQ(bernal({"sweep", entry.path().string(), "-o", out, "--cell", "1-3"}).status, 0) << entry.path();
     EXPECT_EQ(bernal({"sweep", entry.path().string(), "-o", out, "--list"}).status, 0) << entry.path();
   }
+}
+
+/// Where a cell says the packings number of the bernal that runs, it now says another.
+void let_be_of_other_packings(const fs::path& file) {
+  std::string text = text_of(file);
+  for (const std::string mark : {"\"packings_number\": ", "packings_number = "})
+    if (const std::size_t at = text.find(mark); at != text.npos) {
+      const std::size_t first = at + mark.size(), end = text.find_first_not_of("0123456789", first);
+      text.replace(first, end - first, "7");
+      std::ofstream(file) << text;
+      return;
+    }
+  FAIL() << "no packings number in " << file;
+}
+
+TEST(SweepCommand, MakesCellsOfOtherPackingsAnewAndSaysHowMany) {
+  const Swept swept;
+  ASSERT_EQ(swept.run().status, 0);
+  const auto before = swept.reports();
+  for (const std::size_t k : {1, 4})
+    let_be_of_other_packings(swept.out + "/" + swept.rows()[k].at("folder") + "/report.json");
+  const json collected = swept.report({"--collect"}, 3);
+  EXPECT_EQ(collected["outcomes"]["missing"], 2);
+  const Ended again = swept.run();
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.err.find("again      2 of other packings"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("(packings 7, commit "), std::string::npos) << again.err;
+  EXPECT_EQ(again.err.find("not as they were written"), std::string::npos) << again.err;
+  EXPECT_EQ(swept.report()["ran"], 0);
+  EXPECT_EQ(swept.report()["outdated"], 0);
+  std::size_t anew = 0;
+  for (const auto& [cell, file] : swept.reports()) anew += before.at(cell) != file;
+  EXPECT_EQ(anew, 2u);
+}
+
+TEST(SweepCommand, TriesWhatABernalOfOtherPackingsRefused) {
+  // Of the last combination alone the spheres are larger than the container.
+  const Swept swept("scene = \"bed.toml\"\n[grid]\nspheres.radius = [0.5, 4]\ncontainer.radius = [9, 3]\n",
+                    "[container]\nkind = \"sphere\"\nradius = 9\n[spheres]\ncount = 2\nradius = 0.5\n"
+                    "[[stage]]\ndo = \"insert\"\nattempts = 50\n");
+  EXPECT_EQ(swept.report({}, 3)["outcomes"]["refused"], 1);
+  EXPECT_EQ(swept.report({}, 3)["ran"], 0);
+  let_be_of_other_packings(swept.out + "/" + swept.rows()[3].at("folder") + "/failed.toml");
+  const json again = swept.report({}, 3);
+  EXPECT_EQ(again["ran"], 1);
+  EXPECT_EQ(again["outdated"], 1);
 }
 
 }  // namespace sweep_command_test

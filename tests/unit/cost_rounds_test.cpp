@@ -3,6 +3,9 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
 
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
@@ -196,7 +199,7 @@ TEST(Rounds, RefuseNumbersThatNoRunGives) {
     const std::string rest = good.substr(good.find('\n', commas.back()));
     return good.substr(0, line) + changed + hash_of_text(changed) + rest;  // sealed as if a run had given it
   };
-  const std::size_t phi = 8, cpu_seconds = 22;
+  const std::size_t phi = 9, cpu_seconds = 23;
   for (const auto& [column, cell] : {std::pair(phi, "7"), std::pair(phi, "nan"), std::pair(phi, "-0.1"),
                                      std::pair(cpu_seconds, "inf"), std::pair(cpu_seconds, "-1")}) {
     std::ofstream(file) << with(column, cell);
@@ -222,6 +225,42 @@ TEST(Rounds, RefuseNumbersThatNoRunGives) {
   EXPECT_EQ(TrialRecord(file).size(), 1u);
   EXPECT_EQ(TrialRecord(file, true).size(), 0u);
   EXPECT_TRUE(TrialRecord(file).names_file("cost.md", "0123")) << "what was written stays known";
+}
+
+// Seconds of another version of the same packings are kept, those of other packings are made anew.
+TEST(Rounds, MakeTrialsOfOtherPackingsAnew) {
+  const testing::Folder folder;
+  const auto file = folder.path() / "trials.csv";
+  const auto settings = three_settings();
+  const RoundOptions options{.seeds = {3}, .threads = 1};
+  {
+    TrialRecord record(file);
+    interleaved(settings, record, options);
+  }
+  const std::string own = fmt::format(",3,1,{},", packings_number()),
+                    other = fmt::format(",3,1,{},", packings_number() - 1);
+  std::istringstream lines(testing::text_of(file));
+  std::string text, line;
+  std::getline(lines, line);
+  text = line + '\n';
+  while (std::getline(lines, line)) {
+    if (line.find("\"a\"") != std::string::npos) {  // the first of them alone
+      ASSERT_NE(line.find(own), std::string::npos) << line;
+      line.replace(line.find(own), own.size(), other);
+      line.resize(line.rfind(',') + 1);
+      line += hash_of_text(line);
+    }
+    text += line + '\n';
+  }
+  std::ofstream(file) << text;
+  TrialRecord record(file);
+  EXPECT_EQ(record.size(), 2u);
+  ASSERT_EQ(record.outdated(), 1u);
+  EXPECT_EQ(record.packings_of_outdated(), packings_number() - 1);
+  EXPECT_EQ(record.find(settings[0], 3, 1), nullptr);
+  EXPECT_EQ(interleaved(settings, record, options).made, 1u);
+  EXPECT_EQ(TrialRecord(file).outdated(), 0u) << "it was made anew";
+  EXPECT_EQ(TrialRecord(file).size(), 3u);
 }
 
 // In a folder of somebody else.

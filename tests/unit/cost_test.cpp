@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <random>
 #include <set>
+#include <sstream>
 
 #include "bernal/cost/cost.hpp"
 #include "bernal/hard/grow.hpp"
@@ -19,6 +21,7 @@
 #include "cost/faceted.hpp"
 #include "cost/front.hpp"
 #include "cost/knobs.hpp"
+#include "cost/rounds.hpp"
 #include "cost/verdict.hpp"
 #include "support/folder.hpp"
 
@@ -247,6 +250,37 @@ TEST(Cost, RunsNothingTwice) {
   EXPECT_GT(second.runs_kept, 0u);
   EXPECT_EQ(TrialRecord(folder / "trials.csv").size(), record.size() + second.runs_made);
   EXPECT_EQ(second.rows[second.own].seconds, first.rows[first.own].seconds);
+  EXPECT_EQ(second.outdated, "");
+}
+
+TEST(Cost, SaysWhichRunsAreOfOtherPackings) {
+  const testing::Folder folder;
+  const Scene scene = equal_spheres(PeriodicBox{}, 40, Relax{});
+  measured(scene, folder, 0.5, 1);
+  const std::string text = testing::text_of(folder / "trials.csv");
+  std::istringstream lines(text);
+  std::string changed, line;
+  std::getline(lines, line);
+  changed = line + '\n';
+  const std::string own = fmt::format(",1,1,{},", packings_number());
+  int runs = 0;
+  while (std::getline(lines, line)) {
+    if (const std::size_t at = line.find(own); at != line.npos) {
+      line.replace(at, own.size(), ",1,1,7,");
+      line.resize(line.rfind(',') + 1);
+      line += cost::hash_of_text(line);
+      ++runs;
+    }
+    changed += line + '\n';
+  }
+  ASSERT_GT(runs, 0) << text;
+  std::ofstream(folder / "trials.csv") << changed;
+  const CostReport again = measured(scene, folder, 0.5, 1);
+  EXPECT_EQ(again.runs_kept, 0u);
+  EXPECT_TRUE(again.outdated.starts_with(fmt::format("{} run", runs))) << again.outdated;
+  EXPECT_NE(again.outdated.find("of packings 7, and this is bernal " + text_of(this_program())),
+            std::string::npos)
+      << again.outdated;
 }
 
 TEST(Cost, SaysWhatBuysNothing) {

@@ -75,7 +75,10 @@ struct CostReport {
   std::vector<std::string> refused;          ///< settings that cannot be run, each with why
   std::string ending;                        ///< why no more was measured
   std::size_t runs_made = 0, runs_kept = 0;  ///< in this call, in earlier ones
-  bool complete = false;                     ///< nothing was left to try
+  /// In one sentence, which runs of earlier calls do not count, as a bernal of other packings made them;
+  /// empty if all do.
+  std::string outdated;
+  bool complete = false;  ///< nothing was left to try
   bool cancelled = false;
   std::vector<std::filesystem::path> files;
 };

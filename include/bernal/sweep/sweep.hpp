@@ -9,6 +9,7 @@
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/scene/scene.hpp"
+#include "bernal/version.hpp"
 
 namespace bernal {
 
@@ -64,7 +65,7 @@ class Sweep {
 /// How a cell of a sweep stands in its folder.
 struct CellResult {
   enum class State {
-    missing,  ///< nothing is known, or report and files are not as they were written
+    missing,  ///< nothing is known; or report and files are not as they were written, or of other packings
     packed,   ///< the folder holds a packing, whether or not it is what was asked for
     refused,  ///< bad input, which only shows when it is run: a part that is no container
     crashed,  ///< a signal ended it, memory or the disk were full: the next call tries again
@@ -78,7 +79,8 @@ struct CellResult {
   std::optional<std::size_t> n, rattlers;
   std::optional<double> phi, coordination, max_overlap, min_wall_gap, seconds, peak_memory_bytes;
   std::optional<bool> certified;
-  std::string hash, version;
+  std::string hash;
+  Program program;  ///< that packed it
 
   bool is_done() const { return exit_code == 0; }
 };
@@ -94,9 +96,9 @@ struct SweepRow {
 /// Where a cell's result stands in the folder of a sweep: "cells/3f9a…".
 std::filesystem::path folder_of_cell(const std::string& hash);
 
-/// What stands there. A packing does where nobody has changed its report, and its scene and its spheres are
-/// those that it describes; else the cell is missing, and the reason says why. Changes nothing. Cost: reading
-/// the report and the spheres, about 0.25 µs each.
+/// What stands there. A packing does where a bernal of our packings number made it, nobody has changed its
+/// report, and its scene and its spheres are those that it describes; else the cell is missing, and the
+/// reason says why. Changes nothing. Cost: reading the report and the spheres, about 0.25 µs each.
 CellResult read_cell(const std::filesystem::path& folder, const std::string& hash);
 
 struct CellOptions {
@@ -135,6 +137,7 @@ struct SweepReport {
   int jobs = 0, threads = 0;
   std::size_t ran = 0;  ///< cells of this call's processes; of several calls each cell counts in one
   std::vector<SweepRow> distrusted;  ///< that were there and not as they were written, which the reason says
+  std::vector<SweepRow> outdated;    ///< that a bernal of other packings had made, which the reason says
   bool cancelled = false;
   std::vector<std::filesystem::path> files;
 
