@@ -204,7 +204,8 @@ CheckpointFolder::CheckpointFolder(const fs::path& result) : folder_(result / fo
 
 CheckpointFolder::~CheckpointFolder() {
   std::error_code ignored;  // as where there is something in it
-  if (lock_.of().is_open()) fs::remove(folder_, ignored);
+  if (!lock_.of().is_open() || !fs::remove(folder_, ignored)) return;
+  if (made_result_) fs::remove(folder_.parent_path(), ignored);
 }
 
 /// Returns false where another process has it. Where file systems know no locks everybody has it.
@@ -220,6 +221,7 @@ bool CheckpointFolder::hold() {
 
 bool CheckpointFolder::claim() {
   std::error_code problem;
+  made_result_ = made_result_ || !fs::exists(folder_.parent_path(), problem);
   fs::create_directories(folder_, problem);
   if (problem)
     throw Error(ErrorCode::cannot_write, "no checkpoint can be written: " + problem.message(),

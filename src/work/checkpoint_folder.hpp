@@ -35,7 +35,7 @@ class CheckpointFolder {
  public:
   /// Of the folder that will hold the result. Nothing is made yet.
   explicit CheckpointFolder(const std::filesystem::path& result);
-  /// Takes the folder away if it is this run's and nothing is in it.
+  /// Takes away what `claim` has made, if nothing is in it.
   ~CheckpointFolder();
   CheckpointFolder(const CheckpointFolder&) = delete;
   CheckpointFolder& operator=(const CheckpointFolder&) = delete;
@@ -63,6 +63,7 @@ class CheckpointFolder {
  private:
   bool hold();
   std::filesystem::path folder_;
+  bool made_result_ = false;  // the folder that will hold the result
   Lock lock_;
 };
 
