@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Whether every link in the project's Markdown leads to a file that is there, and to a heading in it; whether the files
-exist that the pages for developers and the comments in the code name; and whether installed headers name only what
-whoever has them alone can find."""
+exist that the pages for developers and the comments in the code name; whether installed headers name only what whoever
+has them alone can find; and whether README and the guide name this version."""
 
 import pathlib
 import re
@@ -66,6 +66,15 @@ def strangers_in_headers():
             yield from ((f"include/bernal/{header}:{number}", name) for name in dict.fromkeys(names))
 
 
+def other_versions(files):
+    """(Where, name) of what README and the guide call by a version that is not that of the source."""
+    version = re.search(r"^project\(bernal VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text(), flags=re.M)[1]
+    for file in files:
+        for name, found in re.findall(r"(bernal[-_ (]+v?(\d+(?:\.\d+)+))", file.read_text()):
+            if not (version + ".").startswith(found + "."):
+                yield file, name
+
+
 def is_there(name):
     return any((SOURCE / root / name).exists() for root in ("", "src", "include", "include/bernal", "tests"))
 
@@ -88,6 +97,8 @@ def main():
     named = list(named_files())
     problems += [f"{where}: there is no {name}" for where, name in named if not is_there(name) and "build/" not in name]
     problems += [f"{where}: {name} is in no header that is installed" for where, name in strangers_in_headers()]
+    pages = [SOURCE / "README.md", *(SOURCE / "data/guide").glob("*.md")]
+    problems += [f"{file}: {name} is another version" for file, name in other_versions(pages)]
     print("\n".join(problems) or f"{links} links in {len(files)} files lead somewhere")
     sys.exit(bool(problems) or links < 50 or len(named) < 50)
 
