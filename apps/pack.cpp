@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,17 +45,24 @@ struct PackCall {
   double checkpoint_every = CheckpointOptions().every;  ///< seconds; 0: none
 };
 
-/// The unit that a CAD file says of itself, as those of STEP, IGES, 3MF, AMF and glTF do. Cost: reads the file.
+/// The unit that a CAD file says of itself, as those of STEP, IGES, 3MF, AMF and glTF do. Cost: reads the
+/// file.
 Unit unit_of_file(const std::filesystem::path& file) {
   const MeshReport report = read_mesh(MeshFile{file}).report;
   for (const std::string_view name : unit_names())
-    if (std::abs(metres_per(unit_named(name)) / report.metres - 1) < 1e-9) return unit_named(name);
+    if (std::abs(metres_per(unit_named(name)) / report.stated_metres - 1) < 1e-9) return unit_named(name);
   const Vector<3> size = report.bounds.size();
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("the file does not say its unit; it is {:.4g} × {:.4g} × {:.4g} units large: give the "
-                          "unit of these and of all lengths, such as --unit mm",
-                          size.x(), size.y(), size.z()),
-              {file.string()});
+  throw Error(
+      ErrorCode::bad_argument,
+      report.unit.empty()
+          ? fmt::format(
+                "the file does not say its unit; it is {:.4g} × {:.4g} × {:.4g} units large: give the "
+                "unit of these and of all lengths, such as --unit mm",
+                size.x(), size.y(), size.z())
+          : fmt::format("the file is in {}, in which no scene can be: give the unit of all lengths, "
+                        "such as --unit m",
+                        report.unit),
+      {file.string()});
 }
 
 /// The scene that the flags stand for.
@@ -152,8 +160,9 @@ int pack(const PackCall& call) {
   bar.now("prepare");
   if (is_in_slabs(plan.scene)) return pack_slabs(call, plan, folder, bar, monitor);
   CheckpointOptions checkpoints;
-  if (call.checkpoint_every > 0) checkpoints.folder = folder;
-  checkpoints.every = call.checkpoint_every;
+  if (call.checkpoint_every > 0 || call.resume) checkpoints.folder = folder;
+  checkpoints.every =
+      call.checkpoint_every > 0 ? call.checkpoint_every : std::numeric_limits<double>::infinity();
   checkpoints.resume = call.resume;
   checkpoints.tell = [&](const std::string& what) {
     bar.clear();
@@ -195,8 +204,10 @@ Command pack_command() {
             scene_and_mesh_endings()),
        folder({"-o,--output", &call->folder,
                "Folder for the results; made if it does not exist; named after the scene if absent", "DIR"}),
-       with_units({"--unit", &call->unit, "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft; a file that says its own needs none",
-                   "UNIT"}),
+       with_units(
+           {"--unit", &call->unit,
+            "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft; a file that says its own needs none",
+            "UNIT"}),
        {"--diameter", &call->diameter, "Of every sphere in a mesh", "D"},
        excludes(
            list_of(2, {"--lognormal", &call->lognormal, "Lognormal diameters in a mesh", "MEDIAN,SIGMA"}),

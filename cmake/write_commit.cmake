@@ -2,15 +2,21 @@
 # it becomes another one. Asked is the git that the source stands in, whose folder it must be itself; of a source archive
 # it is the file cmake/commit, into which `git archive` writes the commit.
 set(commit unknown)
+set(said)
+set(changes)
+set(problem 0)
 find_program(GIT git)
 if(GIT AND EXISTS ${SOURCE}/.git)
-  # Who builds runs the source's own scripts anyway, so it does not matter to whom it belongs.
-  set(git ${GIT} --no-optional-locks -c safe.directory=* -C ${SOURCE})
-  execute_process(COMMAND ${git} rev-parse --verify --quiet HEAD
-    OUTPUT_VARIABLE said OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-  execute_process(COMMAND ${git} status --porcelain --untracked-files=no
+  # Who builds runs the source's own scripts anyway, so it does not matter to whom it belongs. Hooks of another
+  # repository name that one in the environment.
+  set(git ${CMAKE_COMMAND} -E env --unset=GIT_DIR --unset=GIT_WORK_TREE --unset=GIT_INDEX_FILE
+    ${GIT} --no-optional-locks -c safe.directory=* -C ${SOURCE})
+  execute_process(COMMAND ${git} rev-parse --show-cdup --verify --quiet HEAD OUTPUT_VARIABLE said ERROR_QUIET)
+  string(STRIP "${said}" said)  # "../" stands before it where the repository is that of a folder above
+  execute_process(COMMAND ${git} status --porcelain -- CMakeLists.txt CMakePresets.json apps cmake data include src tests
     OUTPUT_VARIABLE changes RESULT_VARIABLE problem ERROR_QUIET)
-elseif(EXISTS ${SOURCE}/cmake/commit)
+endif()
+if(NOT said MATCHES "^[0-9a-f]+$" AND EXISTS ${SOURCE}/cmake/commit)
   file(STRINGS ${SOURCE}/cmake/commit said LIMIT_COUNT 1)
   set(changes)
   set(problem 0)

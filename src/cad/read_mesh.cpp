@@ -288,6 +288,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (read.facts.unit) {
     report.unit = read.facts.written_in ? read.facts.written_in->name : read.facts.unit->name;
     report.metres = read.facts.unit->metres;
+    report.stated_metres = read.facts.written_in ? read.facts.written_in->metres : report.metres;
   }
   if (read.facts.deflection) report.deflection = factor * *read.facts.deflection;
   report.up = read.facts.up;

@@ -69,8 +69,8 @@ std::string complaint_about(const fs::path& folder, const std::string& cell, con
 
 /// Whether a result is of the packings that this bernal makes; else the cell is missing, and why is said.
 bool is_of_our_packings(const Program& by, CellResult& result) {
-  if (by.packings_number == packings_number()) return true;
   result.program = by;
+  if (by.packings_number == packings_number()) return true;
   result.reason = "it was made by " + beside_this(by);
   return false;
 }
@@ -102,11 +102,11 @@ CellResult read_cell(const fs::path& folder, const std::string& hash) {
   std::error_code unknown;
   if (!fs::is_directory(there, unknown)) return result;
   const std::string report = bytes_of_file(where_it_stands(there / "report.json"));
-  if (const auto summary = summary_of_report(report)) {
-    if (!is_of_our_packings(summary->program, result)) return result;
+  const auto summary = summary_of_report(report);
+  if (summary && is_of_our_packings(summary->program, result)) {
     result.reason = complaint_about(there, hash, report, *summary);
     if (result.reason.empty()) take_report(*summary, result);
-  } else if (fs::is_regular_file(there / failure_name, unknown)) {
+  } else if (fs::is_regular_file(there / failure_name, unknown)) {  // later than a result of other packings
     take_failure(there / failure_name, result);
   }
   return result;

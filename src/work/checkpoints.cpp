@@ -40,9 +40,10 @@ Checkpoints::Checkpoints(const Monitor& monitor, const CheckpointOptions& option
       tell(options_, fmt::format("another run is at work in {}: this one keeps no checkpoints",
                                  options.folder.string()));
     else if (CheckpointFolder::stands_in(options.folder))
-      tell(options_, fmt::format("a run that was ended left a checkpoint in {}, which this one will replace; "
-                                 "‹resume› would go on from it",
-                                 options.folder.string()));
+      tell(options_,
+           fmt::format("a run that was ended left a checkpoint in {}, which this one will replace; "
+                       "‹resume› would go on from it, where it is of this scene and of these packings",
+                       options.folder.string()));
     return;
   }
   std::string note;

@@ -67,12 +67,36 @@ TEST_F(Commit, IsThatOfGitAndSaysChanges) {
   EXPECT_EQ(said(source_), commit + "+changes");
 }
 
+TEST_F(Commit, SourcesThatGitDoesNotKnowAreChangesToo) {
+  ASSERT_TRUE(git("init") && git("add .") && git("commit -m first"));
+  const std::string commit = said(source_);
+  fs::create_directories(source_ / "src");
+  folder_.write("source/src/new.cpp", "");
+  EXPECT_EQ(said(source_), commit + "+changes");
+}
+
 TEST_F(Commit, IsInAnArchiveOfTheSource) {
   ASSERT_TRUE(git("init") && git("add .") && git("commit -m first"));
   const std::string commit = said(source_);
-  fs::create_directories(folder_ / "archive");
-  ASSERT_TRUE(runs("cd '" + source_.string() + "' && git archive HEAD | tar -x -C ../archive"));
-  EXPECT_EQ(said(folder_ / "archive"), commit);
+  fs::create_directories(source_ / "archive");
+  ASSERT_TRUE(runs("cd '" + source_.string() + "' && git archive HEAD | tar -x -C archive"));
+  ASSERT_TRUE(git("commit --allow-empty -m second"));
+  EXPECT_EQ(said(source_ / "archive"), commit);
+  fs::create_directories(source_ / "archive/.git");  // of no repository
+  EXPECT_EQ(said(source_ / "archive"), commit);
+}
+
+TEST_F(Commit, IsOfNoRepositoryThatTheEnvironmentNames) {
+  ASSERT_TRUE(git("init") && git("add .") && git("commit -m first"));
+  const std::string commit = said(source_);
+  const fs::path other = folder_ / "other/.git";
+  ASSERT_TRUE(runs("git init '" + (folder_ / "other").string() + "'"));
+  setenv("GIT_DIR", other.c_str(), 1);
+  setenv("GIT_INDEX_FILE", (other / "index").c_str(), 1);
+  const std::string then = said(source_);
+  unsetenv("GIT_DIR");
+  unsetenv("GIT_INDEX_FILE");
+  EXPECT_EQ(then, commit);
 }
 
 /// So that nothing is compiled that need not be.

@@ -112,6 +112,14 @@ TEST(Pack, AFileThatSaysItsUnitNeedsNone) {
   EXPECT_EQ(report_of(folder / "cube")["unit"], "in");
   EXPECT_NEAR(report_of(folder / "cube")["volume"].get<double>(), 8.0 / 6, 1e-12);
 
+  // OpenCASCADE converts to millimetres, and the diameter is in inches all the same.
+  if (bernal({"inspect", BERNAL_DATA "/meshes/round_bodies_inch.step"}).status == 0) {
+    EXPECT_EQ(
+        bernal_in(folder, "pack " BERNAL_DATA "/meshes/round_bodies_inch.step --diameter 5 -o step").status,
+        0);
+    EXPECT_EQ(report_of(folder / "step")["unit"], "in");
+  }
+
   std::filesystem::copy(BERNAL_DATA "/meshes/hopper.stl", folder / "hopper.stl");
   expect_refused_in_one_line(bernal_in(folder, "pack hopper.stl --diameter 30"),
                              {"hopper.stl", "does not say its unit", "units large", "such as --unit mm"});

@@ -65,6 +65,15 @@ TEST(Resume, ASignalThatComesTwiceAtOnceIsOne) {
   EXPECT_EQ(report_of(out)["outcome"], "cancelled");
 }
 
+TEST(Resume, GoesOnWithoutFurtherCheckpoints) {
+  const Folder folder;
+  const std::string scene = folder.write("scene.toml", long_scene);
+  ASSERT_EQ(ended_by(SIGKILL, scene, folder / "out").status, 128 + SIGKILL);
+  const Ended resumed = bernal({"pack", scene, "-o", folder / "out", "--resume", "--checkpoint-every", "0"});
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(report_of(folder / "out")["resumed"], 1);
+}
+
 TEST(Resume, StartsAnewWhereThereIsNothingAndSaysSo) {
   const Folder folder;
   const std::string scene = folder.write("scene.toml", small_scene);

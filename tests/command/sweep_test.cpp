@@ -204,6 +204,22 @@ TEST(SweepCommand, MakesCellsOfOtherPackingsAnewAndSaysHowMany) {
   EXPECT_EQ(anew, 2u);
 }
 
+TEST(SweepCommand, KeepsAFailureThatIsLaterThanAResultOfOtherPackings) {
+  const Swept swept;
+  ASSERT_EQ(swept.run().status, 0);
+  const std::string cell = swept.out + "/" + swept.rows()[1].at("folder");
+  const std::string number = std::to_string(report_of(cell)["packings_number"].get<int>());
+  let_be_of_other_packings(cell + "/report.json");
+  std::ofstream(cell + "/failed.toml")
+      << "outcome = \"refused\"\nexit_code = 2\nreason = \"it is too large\"\n"
+         "version = \"0.2.0\"\npackings_number = "
+      << number << "\n";
+  const json again = swept.report({}, 3);
+  EXPECT_EQ(again["ran"], 0);
+  EXPECT_EQ(again["outcomes"]["refused"], 1);
+  EXPECT_EQ(swept.rows()[1].at("packings_number"), number);
+}
+
 TEST(SweepCommand, TriesWhatABernalOfOtherPackingsRefused) {
   // Of the last combination alone the spheres are larger than the container.
   const Swept swept("scene = \"bed.toml\"\n[grid]\nspheres.radius = [0.5, 4]\ncontainer.radius = [9, 3]\n",
