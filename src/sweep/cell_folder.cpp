@@ -69,8 +69,8 @@ std::string complaint_about(const fs::path& folder, const std::string& cell, con
 
 /// Whether a result is of the packings that this bernal makes; else the cell is missing, and why is said.
 bool is_of_our_packings(const Program& by, CellResult& result) {
-  result.program = by;
   if (by.packings_number == packings_number()) return true;
+  result.program = by;
   result.reason = "it was made by " + beside_this(by);
   return false;
 }
@@ -88,6 +88,7 @@ void take_failure(const fs::path& file, CellResult& result) {
     result.outcome = *state == "refused" ? "refused" : "crashed";
     result.exit_code = static_cast<int>(*exit_code);
     result.reason = failure["reason"].value_or(std::string());
+    result.program = by;
   } catch (const toml::parse_error&) {  // then nothing is known
   }
 }

@@ -110,7 +110,7 @@ TEST(Pack, AFileThatSaysItsUnitNeedsNone) {
   const Ended packed = bernal_in(folder, "pack cube.amf --diameter 0.2");
   EXPECT_EQ(packed.status, 0) << packed.err;
   EXPECT_EQ(report_of(folder / "cube")["unit"], "in");
-  EXPECT_NEAR(report_of(folder / "cube")["volume"].get<double>(), 8.0 / 6, 1e-12);
+  EXPECT_NEAR(report_of(folder / "cube")["container"]["volume"].get<double>(), 8.0 / 6, 1e-12);
 
   // OpenCASCADE converts to millimetres, and the diameter is in inches all the same.
   if (bernal({"inspect", BERNAL_DATA "/meshes/round_bodies_inch.step"}).status == 0) {
