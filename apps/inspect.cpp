@@ -106,8 +106,7 @@ std::vector<Row> rows_of(const MeshReport& report, const std::vector<std::string
 void print(const InspectCall& call, const MeshReport& report, const std::optional<Chambers>& chambers,
            const std::vector<std::string>& lines) {
   std::string known = call.unit.empty() ? report.unit : call.unit;
-  for (const std::string_view name : unit_names())
-    if (call.unit.empty() && std::abs(metres_per(unit_named(name)) / report.metres - 1) < 1e-9) known = name;
+  if (const auto unit = unit_of_metres(report.metres); unit && call.unit.empty()) known = name_of(*unit);
   const std::string unit = known.empty() ? "file units" : known;
   const auto power = [&](const char* sign) { return unit + sign; };
   std::vector<Row> rows = rows_of_file(call, report);

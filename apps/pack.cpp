@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -49,8 +48,7 @@ struct PackCall {
 /// file.
 Unit unit_of_file(const std::filesystem::path& file) {
   const MeshReport report = read_mesh(MeshFile{file}).report;
-  for (const std::string_view name : unit_names())
-    if (std::abs(metres_per(unit_named(name)) / report.stated_metres - 1) < 1e-9) return unit_named(name);
+  if (const auto unit = unit_of_metres(report.stated_metres)) return *unit;
   const Vector<3> size = report.bounds.size();
   throw Error(
       ErrorCode::bad_argument,

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 
 #include "cad/diagnose/counted.hpp"
@@ -35,8 +34,8 @@ constexpr double deflection_over_radius = 0.02;
 /// Ratio of the file's unit to the requested one.
 Ratio ratio_of(const MeshFile& options, const FileFacts& facts, std::optional<Unit> wanted) {
   const auto& of_file = facts.unit;
-  const auto is_same = [&](Unit unit) { return std::abs(metres_per(unit) / of_file->metres - 1) < 1e-9; };
-  if (of_file && options.unit && !options.ignore_unit_of_file && !is_same(*options.unit))
+  const std::optional<Unit> own = of_file ? unit_of_metres(of_file->metres) : std::nullopt;
+  if (of_file && options.unit && !options.ignore_unit_of_file && own != options.unit)
     throw OptionError("unit",
                       fmt::format("the file says that its lengths are in {}, and the scene that they are "
                                   "in {}; leave \"unit\" out, or, if the file is wrong, add "
@@ -45,8 +44,7 @@ Ratio ratio_of(const MeshFile& options, const FileFacts& facts, std::optional<Un
   if (!wanted) return {};
   if (options.unit) return conversion_ratio(*options.unit, *wanted);
   if (!of_file) return {};
-  for (const std::string_view name : unit_names())
-    if (const Unit unit = unit_named(name); is_same(unit)) return conversion_ratio(unit, *wanted);
+  if (own) return conversion_ratio(*own, *wanted);
   return {of_file->metres / metres_per(*wanted)};
 }
 

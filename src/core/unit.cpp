@@ -1,8 +1,10 @@
 #include "bernal/core/unit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -54,6 +56,12 @@ Unit unit_named(std::string_view name) {
 }
 
 double metres_per(Unit unit) { return conversion_factor(unit, Unit::m); }
+
+std::optional<Unit> unit_of_metres(double metres) {
+  for (std::size_t k = 0; k < std::size(names); ++k)
+    if (const Unit unit{static_cast<int>(k)}; std::abs(metres_per(unit) / metres - 1) < 1e-9) return unit;
+  return {};
+}
 
 Ratio conversion_ratio(Unit from, Unit to) { return quotient(definition_of(from), definition_of(to)); }
 double conversion_factor(Unit from, Unit to) { return conversion_ratio(from, to).nearest(); }

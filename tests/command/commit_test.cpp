@@ -40,6 +40,12 @@ class Commit : public ::testing::Test {
     return text.substr(first, text.find('"', first) - first);
   }
 
+  /// Makes a repository of the source, and says what a build would of its first commit.
+  std::string committed() const {
+    EXPECT_TRUE(git("init") && git("add .") && git("commit -m first"));
+    return said(source_);
+  }
+
   Folder folder_;
   fs::path source_ = folder_ / "source";
 };
@@ -68,16 +74,14 @@ TEST_F(Commit, IsThatOfGitAndSaysChanges) {
 }
 
 TEST_F(Commit, SourcesThatGitDoesNotKnowAreChangesToo) {
-  ASSERT_TRUE(git("init") && git("add .") && git("commit -m first"));
-  const std::string commit = said(source_);
+  const std::string commit = committed();
   fs::create_directories(source_ / "src");
   folder_.write("source/src/new.cpp", "");
   EXPECT_EQ(said(source_), commit + "+changes");
 }
 
 TEST_F(Commit, IsInAnArchiveOfTheSource) {
-  ASSERT_TRUE(git("init") && git("add .") && git("commit -m first"));
-  const std::string commit = said(source_);
+  const std::string commit = committed();
   fs::create_directories(source_ / "archive");
   ASSERT_TRUE(runs("cd '" + source_.string() + "' && git archive HEAD | tar -x -C archive"));
   ASSERT_TRUE(git("commit --allow-empty -m second"));
@@ -87,8 +91,7 @@ TEST_F(Commit, IsInAnArchiveOfTheSource) {
 }
 
 TEST_F(Commit, IsOfNoRepositoryThatTheEnvironmentNames) {
-  ASSERT_TRUE(git("init") && git("add .") && git("commit -m first"));
-  const std::string commit = said(source_);
+  const std::string commit = committed();
   const fs::path other = folder_ / "other/.git";
   ASSERT_TRUE(runs("git init '" + (folder_ / "other").string() + "'"));
   setenv("GIT_DIR", other.c_str(), 1);

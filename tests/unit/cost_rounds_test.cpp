@@ -3,9 +3,6 @@
 #include <sys/stat.h>
 
 #include <fstream>
-#include <sstream>
-
-#include <fmt/format.h>
 
 #include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
@@ -14,6 +11,7 @@
 #include "bernal/verify/certificate.hpp"
 #include "cost/rounds.hpp"
 #include "support/folder.hpp"
+#include "support/outdated_trials.hpp"
 
 namespace bernal::cost_rounds_test {
 namespace {
@@ -237,22 +235,8 @@ TEST(Rounds, MakeTrialsOfOtherPackingsAnew) {
     TrialRecord record(file);
     interleaved(settings, record, options);
   }
-  const std::string own = fmt::format(",3,1,{},", packings_number()),
-                    other = fmt::format(",3,1,{},", packings_number() - 1);
-  std::istringstream lines(testing::text_of(file));
-  std::string text, line;
-  std::getline(lines, line);
-  text = line + '\n';
-  while (std::getline(lines, line)) {
-    if (line.find("\"a\"") != std::string::npos) {  // the first of them alone
-      ASSERT_NE(line.find(own), std::string::npos) << line;
-      line.replace(line.find(own), own.size(), other);
-      line.resize(line.rfind(',') + 1);
-      line += hash_of_text(line);
-    }
-    text += line + '\n';
-  }
-  std::ofstream(file) << text;
+  ASSERT_EQ(testing::let_trials_be_of(packings_number() - 1, file, 3, "\"a\""), 1)
+      << "the first of them alone";
   TrialRecord record(file);
   EXPECT_EQ(record.size(), 2u);
   ASSERT_EQ(record.outdated(), 1u);

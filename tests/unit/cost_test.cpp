@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <random>
 #include <set>
-#include <sstream>
 
 #include "bernal/cost/cost.hpp"
 #include "bernal/hard/grow.hpp"
@@ -24,6 +22,7 @@
 #include "cost/rounds.hpp"
 #include "cost/verdict.hpp"
 #include "support/folder.hpp"
+#include "support/outdated_trials.hpp"
 
 namespace bernal::cost_test {
 namespace {
@@ -257,24 +256,8 @@ TEST(Cost, SaysWhichRunsAreOfOtherPackings) {
   const testing::Folder folder;
   const Scene scene = equal_spheres(PeriodicBox{}, 40, Relax{});
   measured(scene, folder, 0.5, 1);
-  const std::string text = testing::text_of(folder / "trials.csv");
-  std::istringstream lines(text);
-  std::string changed, line;
-  std::getline(lines, line);
-  changed = line + '\n';
-  const std::string own = fmt::format(",1,1,{},", packings_number());
-  int runs = 0;
-  while (std::getline(lines, line)) {
-    if (const std::size_t at = line.find(own); at != line.npos) {
-      line.replace(at, own.size(), ",1,1,7,");
-      line.resize(line.rfind(',') + 1);
-      line += cost::hash_of_text(line);
-      ++runs;
-    }
-    changed += line + '\n';
-  }
-  ASSERT_GT(runs, 0) << text;
-  std::ofstream(folder / "trials.csv") << changed;
+  const int runs = testing::let_trials_be_of(7, folder / "trials.csv", 1);
+  ASSERT_GT(runs, 0) << testing::text_of(folder / "trials.csv");
   const CostReport again = measured(scene, folder, 0.5, 1);
   EXPECT_EQ(again.runs_kept, 0u);
   EXPECT_TRUE(again.outdated.starts_with(fmt::format("{} run", runs))) << again.outdated;

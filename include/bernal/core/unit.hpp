@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -16,6 +17,8 @@ Unit unit_named(std::string_view name);
 
 /// Metres in one unit.
 double metres_per(Unit unit);
+/// The unit of so many metres, to 1e-9 of them, as files write roundings; none if there is no such unit.
+std::optional<Unit> unit_of_metres(double metres);
 
 /// A quotient of positive doubles, both integers without a common factor where it is one of units.
 struct Ratio {

@@ -80,7 +80,7 @@ struct CellResult {
   std::optional<double> phi, coordination, max_overlap, min_wall_gap, seconds, peak_memory_bytes;
   std::optional<bool> certified;
   std::string hash;
-  Program program;  ///< that packed it
+  Program program;  ///< that packed it; of a missing cell, that of other packings which had
 
   bool is_done() const { return exit_code == 0; }
 };
