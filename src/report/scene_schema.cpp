@@ -81,9 +81,11 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "flag")
     return key.min > 0 ? SceneSchema{{"const", true}} : SceneSchema{{"type", "boolean"}};
   if (key.type == "word") return one_of_words(key);
-  if (key.type == "distribution") return refers_to(key.name);
+  if (key.type == "distribution" && key.words.empty()) return refers_to(key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
-  SceneSchema value = key.type == "number" || key.type == "integer" ? within_range(key) : refers_to(key.type);
+  SceneSchema value = key.type == "number" || key.type == "integer" ? within_range(key)
+                      : key.type == "distribution"                  ? refers_to(key.name)
+                                                                    : refers_to(key.type);
   if (key.words.empty()) return value;
   const SceneSchema word = one_of_words(key);
   if (key.type == "names") return {{"anyOf", {word, array_of(word, 1)}}};

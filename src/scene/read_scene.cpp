@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -298,6 +299,12 @@ class Reader {
       return sizes;
     }
     const auto value = value_in(node, true);
+    if (const auto* word = value ? std::get_if<std::string>(&*value) : nullptr;
+        word && std::ranges::find(key.words, *word) != key.words.end()) {
+      sizes = Constant{std::numeric_limits<double>::infinity()};  // as its member takes it
+      sizes.locations.whole = at(node.source());
+      return sizes;
+    }
     const Key length = {.name = key.name, .type = Type::length};
     if (!value || !schema::accepts(length, *value))
       fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
