@@ -72,9 +72,9 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
     fmt::print("rattlers          {} ({:.2f} %), held by fewer than {} contacts\n", grouped(c.rattlers),
                100.0 * static_cast<double>(c.rattlers) / static_cast<double>(packing.spheres.size()),
                packing.spheres.dimension() + 1);
-    fmt::print("backbone          {} spheres, {} contacts, coordination {:.4f}{}\n", grouped(c.backbone),
-               grouped(c.backbone_pairs), c.backbone_coordination,
-               walls ? fmt::format("; {} with the wall", grouped(c.backbone_walls)) : "");
+    say(stdout, "backbone          {} spheres, {} contacts, coordination {:.4f}{}\n", grouped(c.backbone),
+        grouped(c.backbone_pairs), c.backbone_coordination,
+        walls ? fmt::format("; {} with the wall", grouped(c.backbone_walls)) : "");
     const double ratio = static_cast<double>(c.backbone_contacts()) / static_cast<double>(*c.isostatic);
     fmt::print("isostatic         {} contacts would just hold the backbone; there are {:.3g} % {}\n",
                grouped(*c.isostatic), 100 * std::abs(ratio - 1), ratio < 1 ? "fewer" : "more");
@@ -100,7 +100,7 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
 
 void print_radial(const Packing& packing, const std::optional<RadialDistribution>& radial) {
   if (!radial) {
-    fmt::print("\ng(r)              only in periodic boxes of two spheres or more\n");
+    say(stdout, "\ng(r)              only in periodic boxes of two spheres or more\n");
     return;
   }
   fmt::print("\ng(r), the radial distribution function; mean diameter {:.6g} {}, bins of {:.3g} {}\n",
@@ -114,7 +114,7 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
 }
 
 void print_size_correlation(const SizeCorrelation& correlation) {
-  fmt::print("\nsize correlation  of two spheres, 0 where their sizes know nothing of each other\n");
+  say(stdout, "\nsize correlation  of two spheres, 0 where their sizes know nothing of each other\n");
   if (correlation.neighbours)
     fmt::print("  neighbours      {:.4f} ± {:.4f}, nearer than {:g} times the sum of their radii\n",
                correlation.neighbours->correlation, correlation.neighbours->error, 1 + BondOrder::widest_gap);
@@ -254,8 +254,8 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
   if (sizes.drawn) print_drawn(*sizes.drawn);
   if (sizes.classes.size() == 1) return;
   if (!sizes.classes.empty()) {
-    fmt::print("\n{:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres", "share",
-               "asked");
+    say(stdout, "\n{:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres", "share",
+        "asked");
     for (const auto& c : sizes.classes)
       fmt::print("{:>12.6g} {:>12} {:>12.5f} {:>12.5f}\n", factor * c.radius, grouped(c.count),
                  static_cast<double>(c.count) / static_cast<double>(packing.spheres.size()), c.asked_share);
@@ -271,9 +271,10 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
 constexpr std::size_t most_cells = 20'000'000;
 
 void print(const Packing& packing, const Measurements& measured) {
-  fmt::print("spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
-             name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
-             name_of(packing.scene.unit));
+  speak_of(packing.spheres.dimension());
+  say(stdout, "spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
+      name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
+      name_of(packing.scene.unit));
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);
@@ -284,7 +285,7 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.order && !packing.spheres.empty()) print_order(*measured.order);
   if (measured.local) print_local(packing, *measured.local);
   if (!measured.local && packing.spheres.size() > most_cells)
-    fmt::print("\nlocal packing     not of so many spheres, unless --local FILE asks for it\n");
+    say(stdout, "\nlocal packing     not of so many spheres, unless --local FILE asks for it\n");
   if (measured.pores) print_pores(packing, *measured.pores, part_of_bed(packing, measured.bed));
   if (measured.structure) print_structure(*measured.structure);
   if (measured.sizes) print_sizes(packing, *measured.sizes);
