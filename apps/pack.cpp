@@ -43,8 +43,10 @@ struct PackCall {
 void print_result(const Packing& packing, std::uint64_t spheres, double packing_fraction,
                   const WrittenPacking& written) {
   speak_of(packing.scene.dimension());
-  say(stderr, "packed     {}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
-      spheres == 1 ? "1 sphere" : grouped(spheres) + " spheres", packing_fraction,
+  const std::optional<double> mass = mass_of(packing, packing_fraction);
+  say(stderr, "packed     {}{}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
+      spheres == 1 ? "1 sphere" : grouped(spheres) + " spheres",
+      mass ? fmt::format(", {:.6g} kg", *mass) : std::string(), packing_fraction,
       packing.expected_packing_fraction, packing.seconds);
   const std::string end = fmt::format("{}: {}", name_of(packing.outcome), packing.reason);
   say(stderr, "outcome    {}\n", falls_short(packing.outcome) ? in_amber(stderr, end) : end);
@@ -91,7 +93,8 @@ int pack_slabs(const PackCall& call, const Plan& plan, const std::filesystem::pa
 int pack(const PackCall& call) {
   ProgressBar bar(call.quiet);
   bar.now("read");
-  const Scene scene = scene_of(call.scene, call.flags);
+  Scene scene = scene_of(call.scene, call.flags);
+  if (call.seed && scene.target.mass) scene.seed = *call.seed;  // of whose radii it is the mass
   const Plan plan = build(scene);
   const std::filesystem::path folder = call.folder.empty() ? call.scene.stem() : call.folder;
   const Monitor monitor = bar.monitor();  // from here on a signal ends what is in the folder in order

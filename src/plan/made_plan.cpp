@@ -50,6 +50,7 @@ Plan build(const Scene& scene) {
     Plan plan = scene.largest ? plan_of_largest(scene) : made_plan(scene);
     plan.caution = in_dimension(dimension, plan.caution);
     for (PlanItem& item : plan.items) item.what = in_dimension(dimension, item.what);
+    for (std::string& hint : plan.hints) hint = in_dimension(dimension, hint);
     return plan;
   } catch (const Error& error) {
     const std::string in_words = in_dimension(dimension, error.message());
