@@ -253,12 +253,19 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
              sizes.volume_ratio_error);
   if (sizes.drawn) print_drawn(*sizes.drawn);
   if (sizes.classes.size() == 1) return;
-  if (!sizes.classes.empty()) {
-    fmt::print("\n{:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres", "share",
-               "asked");
-    for (const auto& c : sizes.classes)
-      fmt::print("{:>12.6g} {:>12} {:>12.5f} {:>12.5f}\n", factor * c.radius, grouped(c.count),
-                 static_cast<double>(c.count) / static_cast<double>(packing.spheres.size()), c.asked_share);
+  std::vector<std::string> there, asked;
+  for (const auto& [share, realised, of_asked] : sizes.volume_quantiles) {
+    there.push_back(fmt::format("D{:.0f} {:.5g}", 100 * share, 2 * realised));
+    asked.push_back(fmt::format("{:.5g}", 2 * of_asked));
+  }
+  fmt::print("by {:<14} {} as diameters; asked {}\n", packing.spheres.dimension() == 2 ? "area" : "volume",
+             fmt::join(there, ", "), fmt::join(asked, ", "));
+  if (!sizes.classes.empty() && sizes.shares.size() == sizes.classes.size()) {  // few
+    fmt::print("\n{:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres",
+               "by number", "asked", packing.spheres.dimension() == 2 ? "by area" : "by volume", "asked");
+    for (const SizeComparison::Share& c : sizes.shares)
+      fmt::print("{:>12.6g} {:>12} {:>12.5f} {:>12.5f} {:>12.5f} {:>12.5f}\n", factor * c.up_to,
+                 grouped(c.count), c.number, c.asked_number, c.volume, c.asked_volume);
     return;
   }
   fmt::print("\n{:>12} {:>12} {:>12}\n", "share below", diameters ? "diameter" : "radius", "asked");

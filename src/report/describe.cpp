@@ -54,7 +54,9 @@ std::string describe_sizes(const Scene& scene) {
   if (!scene.draws()) return "the sizes are those of the start";
   return fmt::format("{} in {}: {}{}", scene.sizes_are_diameters ? "diameter" : "radius", name_of(scene.unit),
                      sizes_in_words(scene.sizes),
-                     scene.draw == Draw::quantiles ? "; drawn by quantiles" : "");
+                     each_once(scene.sizes)          ? ""
+                     : scene.draw == Draw::quantiles ? "; drawn by quantiles"
+                                                     : "");
 }
 
 std::string describe_target(const Plan& plan) {

@@ -83,7 +83,10 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "word") return one_of_words(key);
   if (key.type == "distribution") return refers_to(key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
-  SceneSchema value = key.type == "number" || key.type == "integer" ? within_range(key) : refers_to(key.type);
+  const bool from_zero = key.type == "lengths" && key.min == 0;
+  SceneSchema value = key.type == "number" || key.type == "integer"
+                          ? within_range(key)
+                          : refers_to(from_zero ? "amounts" : key.type);
   if (key.words.empty()) return value;
   const SceneSchema word = one_of_words(key);
   if (key.type == "names") return {{"anyOf", {word, array_of(word, 1)}}};
@@ -171,10 +174,9 @@ void define_group(const ReferenceGroup& group, const std::string& name, SceneSch
   if (is_size) choice.push_back(refers_to("length"));
   for (const ReferenceTable& given : group.tables) {
     std::optional<ReferenceTable> table = given;
-    const bool needed = std::ranges::any_of(
-        given.keys, [](const ReferenceKey& key) { return key.is_diameter && key.required; });
-    const bool in_choice = !given.choices.empty();
-    if (name == "radius") table = needed && !in_choice ? std::nullopt : as_radii(given);
+    // Of percentiles two or more are needed, which this schema does not say.
+    const bool has_diameters = std::ranges::any_of(given.keys, &ReferenceKey::is_diameter);
+    if (name == "radius") table = has_diameters && given.choices.empty() ? std::nullopt : as_radii(given);
     if (!table) continue;
     const bool depends = std::ranges::any_of(
         given.keys, [](const ReferenceKey& key) { return key.is_diameter || key.type == "parts"; });
