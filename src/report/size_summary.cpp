@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,8 +15,6 @@ namespace bernal {
 namespace {
 
 constexpr std::size_t most_shares = 12;
-/// Where half of the spheres and half of their volume lie apart by more, the basis matters.
-constexpr double basis_matters_from = 1.1;
 constexpr double rounding_of_shares = 1e-9;
 
 double factor_of(const Scene& scene) { return scene.sizes_are_diameters ? 2 : 1; }
@@ -46,45 +43,6 @@ std::vector<SizeSummary::Share> shares_of(const Scene& scene, const SizeDistribu
   return shares;
 }
 
-/// Whether the scene's text leaves the basis of these sizes open, which have one.
-bool leaves_basis_open(const SceneSizes& sizes) {
-  const bool has_one = std::visit([](const auto& of) { return requires { of.basis; }; },
-                                  static_cast<const SceneSizes::variant&>(sizes));
-  const auto* lognormal = std::get_if<Lognormal>(&sizes);
-  return has_one && !(lognormal && lognormal->d43) && sizes.locations.whole.line > 0 &&
-         !sizes.locations.keys.contains("basis");
-}
-
-std::vector<std::string> assumed_of(const Scene& scene, const SizeSummary& summary) {
-  std::vector<std::string> assumed;
-  const std::string_view unit = name_of(scene.unit);
-  for (const auto& [share, by_number, by_volume] : summary.percentiles)
-    if (share == 0.5 && leaves_basis_open(scene.sizes) && by_volume > basis_matters_from * by_number) {
-      const bool volume = std::holds_alternative<Percentiles>(scene.sizes);
-      assumed.push_back(fmt::format(
-          "the scene says no basis, and \"{}\" is meant: half of the spheres are below {:.4g} {}, half of their "
-          "{} below {:.4g}; if the shares are {}, say basis = \"{}\"",
-          volume ? "volume" : "number", by_number, unit, scene.dimension() == 2 ? "area" : "volume", by_volume,
-          volume ? "counts of spheres" : "those of a balance", volume ? "number" : "volume"));
-    }
-  if (const auto* sieve = std::get_if<Sieve>(&scene.sizes); sieve && !sieve->pan)
-    if (const SieveCurve curve = curve_of(*sieve); curve.in_pan > 0)
-      assumed.push_back(fmt::format(
-          "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; "
-          "\"pan\" says how fine they are",
-          100 * curve.in_pan, curve.pan, curve.openings[1], unit));
-  if (const auto* given = std::get_if<Percentiles>(&scene.sizes);
-      given && given->law == PercentileLaw::through && !(given->min && given->max)) {
-    const auto curve = curve_through(given_percentiles(*given), given->min.value_or(0),
-                                     given->max.value_or(std::numeric_limits<double>::infinity()));
-    assumed.push_back(fmt::format(
-        "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles "
-        "goes on straight; \"min\" and \"max\" say where",
-        curve.front().size, curve.back().size, unit));
-  }
-  return assumed;
-}
-
 }  // namespace
 
 SizeSummary summary_of(const Scene& scene, const SizeDistribution& radii) {
@@ -99,7 +57,6 @@ SizeSummary summary_of(const Scene& scene, const SizeDistribution& radii) {
       if (const auto& size = given->*each.member)
         summary.fit.push_back(
             {each.name, each.share, *size, 2 * radius_below(radii, each.share, given->basis)});
-  summary.assumed = assumed_of(scene, summary);
   return summary;
 }
 
@@ -149,10 +106,6 @@ std::string summary_in_words(const SizeSummary& summary, const Scene& scene) {
       all.push_back(fit_in_words(fit));
     head = "law";
     line(fmt::format("{} {}, against what was given", fmt::join(all, ", "), basis_of_fit(scene)));
-  }
-  for (const std::string& sentence : summary.assumed) {
-    head = "assumed";
-    line(sentence);
   }
   return text;
 }

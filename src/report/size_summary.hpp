@@ -33,9 +33,6 @@ struct SizeSummary {
     double share, given, fitted;
   };
   std::vector<Fit> fit;
-
-  /// What the scene leaves open and matters: sentences.
-  std::vector<std::string> assumed;
 };
 
 /// Precondition: radii of the scene. Cost: some 300 moments.

@@ -32,7 +32,7 @@ void complete_list(Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   const Target& target = scene.target;
   const bool box_follows = box && (box->scalable || (box->size.empty() && !box->edge));
-  if (target.fill || target.bed.gives_height() || (target.has_packing_fraction() && !box_follows))
+  if (target.fill || target.mass || target.bed.gives_height() || (target.has_packing_fraction() && !box_follows))
     throw Error(ErrorCode::bad_scene,
                 fmt::format("the list says how many spheres there are, {}, each exactly once: leave \"fill\", "
                             "\"packing_fraction\" and the height of a bed out of [spheres], {}",
