@@ -46,7 +46,8 @@ JobPointer explain_job(const Scene& scene) {
 }
 
 /// During the activity "estimate" there is no packing yet that an interrupt could return.
-JobPointer pack_job(const Scene& scene, std::optional<std::uint64_t> seed, int threads) {
+JobPointer pack_job(Scene scene, std::optional<std::uint64_t> seed, int threads) {
+  if (seed && scene.target.mass) scene.seed = *seed;  // of whose radii it is the mass
   return job([=](const Monitor& monitor) {
     monitor.report({"estimate", -1, {}});
     const Plan plan = build(scene);

@@ -83,6 +83,7 @@ std::string_view density_in_words(const BedTarget& bed) {
 std::string explain(const Plan& plan) {
   const Scene& scene = plan.scene;
   std::string text = describe(plan);
+  for (const std::string& hint : plan.hints) text += fmt::format("note       {}\n", hint);
   text += fmt::format("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
   if (const auto& bed = plan.expected_bed)
     text += fmt::format(

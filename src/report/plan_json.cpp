@@ -52,6 +52,7 @@ std::string plan_as_json(const Plan& plan) {
         {"seconds", plan.expected_seconds},
         {"memory_bytes", plan.expected_memory_bytes}}},
       {"caution", plan.caution.empty() ? ordered_json() : ordered_json(plan.caution)},
+      {"notes", plan.hints},
       {"outputs", outputs},
       {"items", items},
       {"absent", plan.absent},

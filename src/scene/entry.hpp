@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "bernal/core/quantity.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/scene/scene.hpp"
 
@@ -144,10 +145,14 @@ struct Key {
   std::vector<Value> ladder = {};
   bool is_limit = false;    ///< it buys that only where a run ends at it
   std::string unsaid = {};  ///< the value, as TOML, that is not written; none if empty
+  /// Of a number: whose unit may stand with it, in text; and of lengths that are diameters of grains.
+  Quantity quantity = Quantity::none;
 
   /// What is written of it, nothing where it goes without saying.
   std::optional<Value> of(const void* options) const;
   bool acts_here(bool in_bed) const { return acts == Acts::everywhere || (acts == Acts::in_bed) == in_bed; }
+  /// Of what its numbers are.
+  Quantity measured() const;
 };
 
 using Text = std::string_view;
@@ -176,6 +181,11 @@ inline Key names(Member member, Text name, Text help, std::vector<std::string_vi
 Key word(const Member& member, Text name, Text help, std::vector<std::string_view> words);
 /// A key that is said only where it is not `otherwise`.
 Key unless(std::string otherwise, Key key);
+/// Numbers of that quantity.
+inline Key of_quantity(Quantity quantity, Key key) {
+  key.quantity = quantity;
+  return key;
+}
 inline Key required(Key key) {
   key.required = true;
   return key;

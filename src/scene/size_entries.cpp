@@ -137,8 +137,17 @@ std::string instead_of(const Entry& sizes, std::string_view key, const Numbers& 
   return {};
 }
 
+/// Lengths are diameters of grains there, but for what says otherwise.
+static std::vector<Entry> of_grains(std::vector<Entry> entries) {
+  for (Entry& entry : entries)
+    for (Key& key : entry.keys)
+      if (key.quantity == Quantity::none && (key.type == Type::length || key.type == Type::lengths))
+        key.quantity = Quantity::diameter;
+  return entries;
+}
+
 const std::vector<Entry>& size_entries() {
-  static const std::vector<Entry> all = {
+  static const std::vector<Entry> all = of_grains({
       entry<Constant>(
           {.name = "constant",
            .help = "all spheres alike",
@@ -156,22 +165,25 @@ const std::vector<Entry>& size_entries() {
                       .keys = {required(length(&Uniform::min, "min", "the smallest")),
                                required(length(&Uniform::max, "max", "the largest")), basis(&Uniform::basis)},
                       .rule = rule(limits_rule<Uniform>)}),
-      entry<Normal>({.name = "normal",
-                     .help = "the size is normal",
-                     .keys = {required(length(&Normal::mean, "mean", "of the basis, before any cut")),
-                              required(length(&Normal::sd, "sd", "standard deviation, before any cut")),
-                              basis(&Normal::basis),
-                              length(&Normal::min, "min",
-                                     "cut off below; if absent, six standard deviations below the mean"),
-                              length(&Normal::max, "max",
-                                     "cut off above; if absent, six standard deviations above the mean")},
-                     .rule = rule(limits_rule<Normal>)}),
+      entry<Normal>(
+          {.name = "normal",
+           .help = "the size is normal",
+           .keys = {required(length(&Normal::mean, "mean", "of the basis, before any cut")),
+                    required(of_quantity(Quantity::length,
+                                         length(&Normal::sd, "sd", "standard deviation, before any cut"))),
+                    basis(&Normal::basis),
+                    length(&Normal::min, "min",
+                           "cut off below; if absent, six standard deviations below the mean"),
+                    length(&Normal::max, "max",
+                           "cut off above; if absent, six standard deviations above the mean")},
+           .rule = rule(limits_rule<Normal>)}),
       entry<Lognormal>(
           {.name = "lognormal",
            .help = "the logarithm of the size is normal",
            .keys = {required(length(&Lognormal::median, "median", "half of the basis lies below")),
-                    required(number(&Lognormal::sigma, "sigma", "standard deviation of the logarithm",
-                                    above(0, 5))),
+                    required(of_quantity(Quantity::spread,
+                                         number(&Lognormal::sigma, "sigma",
+                                                "standard deviation of the logarithm", above(0, 5)))),
                     basis(&Lognormal::basis),
                     diameter(&Lognormal::d43, "d43",
                              "volume-weighted mean diameter <d^4>/<d^3>, before any cut"),
@@ -228,7 +240,7 @@ const std::vector<Entry>& size_entries() {
                                  "how much there is of each, in any scale")),
                     basis(&Mixture::basis)},
            .rule = rule(mixture_rule)}),
-  };
+  });
   return all;
 }
 
