@@ -82,6 +82,7 @@ py::array_t<T> array_of(const std::vector<T>& values) {
 /// Arrays with one entry for each sphere. A sphere in no chamber has -1.
 py::dict per_sphere(const Measurements& measured) {
   py::dict all;
+  all["coordination"] = array_of(measured.of_contacts.coordination);
   if (measured.local) {
     all["local_packing_fraction"] = array_of(measured.local->packing_fraction);
     all["cell_volume"] = array_of(measured.local->cell_volume);

@@ -61,7 +61,9 @@ std::string describe_sizes(const Scene& scene) {
   return fmt::format("{} in {}: {}{}{}", scene.sizes_are_diameters ? "diameter" : "radius",
                      name_of(scene.unit),
                      scene.largest && is_one ? "as large as fit" : sizes_in_words(scene.sizes), scale,
-                     scene.draw == Draw::quantiles ? "; drawn by quantiles" : "");
+                     each_once(scene.sizes)          ? ""
+                     : scene.draw == Draw::quantiles ? "; drawn by quantiles"
+                                                     : "");
 }
 
 std::string amount_in_words(const Scene& scene, double diameter, bool are_equal, std::uint64_t count) {
