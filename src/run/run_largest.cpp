@@ -28,6 +28,8 @@ class Search {
       : plan_(plan), options_(options), tries_(tries_for(*plan.scene.target.count)) {}
 
   Packing found() {
+    if (options_.checkpoints.resume && options_.checkpoints.tell)
+      options_.checkpoints.tell("the search for the largest spheres has no checkpoints; it starts anew");
     double scale = plan_.scene.scale;
     std::optional<double> fitting, too_large;
     for (int down = 0; !stopped_ && (!fitting || !too_large || *too_large > (1 + known_to) * *fitting);) {
