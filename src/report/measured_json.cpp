@@ -207,6 +207,7 @@ static void to_json(Json& json, const SizeComparison& sizes) {
           {"drawn", sizes.drawn},
           {"shares", sizes.shares},
           {"quantiles", sizes.quantiles},
+          {"volume_quantiles", sizes.volume_quantiles},
           {"classes", sizes.classes}};
 }
 
@@ -220,6 +221,7 @@ Json figures_of(const std::optional<SizeComparison>& sizes) {
           {"chi_squared_p_value", sizes->chi_squared_p_value},
           {"mean_volume_ratio", sizes->volume_ratio},
           {"shares", sizes->shares},
+          {"volume_quantiles", sizes->volume_quantiles},
           {"drawn", sizes->drawn}};
 }
 
