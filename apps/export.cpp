@@ -128,7 +128,7 @@ Command export_command() {
            "if it has a table [[output]] with a line format = \"lammps\" and the options below as keys. "
            "bernal import goes the other way.",
        .lists = {{.title = "Formats", .entries = entries_of_formats()}},
-       .examples = {{"bernal export out --to lammps -o bed.data --density 2650 --types 3",
+       .examples = {{"bernal export out --to lammps -o bed.data --material-density 2650 --types 3",
                      "atoms of three types by size"},
                     {"bernal export out --to nrrd -o bed.nrrd --resolution 512 --values labels",
                      "an image: which sphere is where"},

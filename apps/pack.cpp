@@ -100,8 +100,10 @@ std::vector<std::string> scene_and_mesh_endings() {
 
 void print_result(const Packing& packing, std::uint64_t spheres, double packing_fraction,
                   const WrittenPacking& written) {
-  say(stderr, "packed     {}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
-      spheres == 1 ? "1 sphere" : grouped(spheres) + " spheres", packing_fraction,
+  const std::optional<double> mass = mass_of(packing, packing_fraction);
+  say(stderr, "packed     {}{}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
+      spheres == 1 ? "1 sphere" : grouped(spheres) + " spheres",
+      mass ? fmt::format(", {:.6g} kg", *mass) : std::string(), packing_fraction,
       packing.expected_packing_fraction, packing.seconds);
   say(stderr, "outcome    {}: {}\n", name_of(packing.outcome), packing.reason);
   say(stderr, "proof      {}\n", written.certificate.statement);
@@ -147,7 +149,8 @@ int pack_slabs(const PackCall& call, const Plan& plan, const std::filesystem::pa
 int pack(const PackCall& call) {
   ProgressBar bar(call.quiet);
   bar.now("read");
-  const Scene scene = scene_of(call);
+  Scene scene = scene_of(call);
+  if (call.seed && scene.target.mass) scene.seed = *call.seed;  // of whose radii it is the mass
   const Plan plan = build(scene);
   const std::filesystem::path folder = call.folder.empty() ? call.scene.stem() : call.folder;
   const Monitor monitor = bar.monitor();  // from here on a signal ends what is in the folder in order

@@ -65,7 +65,7 @@ void require_slabs_fit(const Scene& scene, const Refusal& refuse) {
     refuse.at(where,
               "\"slabs\" are those of a box that repeats itself along all axes and whose size is the result: "
               "leave \"slabs\" out, or make the container such a box");
-  if (!scene.target.count || scene.target.has_packing_fraction())
+  if (!scene.target.has_count() || scene.target.has_packing_fraction())
     refuse.at(where,
               "\"slabs\" need a \"count\" in [spheres], and no packing fraction; give that, or leave "
               "\"slabs\" out");
@@ -98,7 +98,7 @@ void require_pouring_fits(const Scene& scene, const Domain& domain, const Refusa
   if (!has_walls(domain) || !table_of(scene.stages.front()).traits.stands_in_bed(scene))
     refuse.at(where,
               "spheres are poured onto a floor, which this periodic box has not: take another container");
-  if (!scene.target.count)
+  if (!scene.target.has_count())
     refuse.at(where, "\"pour\" needs a \"count\" in [spheres]: how many spheres are poured");
 }
 

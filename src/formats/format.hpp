@@ -55,6 +55,8 @@ struct Exported {
     return k < spheres.x.size() ? spheres.x[k][i] : 0.0;
   }
   Unit unit() const { return *output.unit; }
+  /// Of the spheres, in kg/m³. Precondition: the format takes a density.
+  double density() const { return *output.material_density; }
   double largest_radius() const;
 
   /// Whether each of three axes is periodic.

@@ -38,11 +38,11 @@ UnitStyle style_of_unit(Unit length) {
 void write_lammps(const Exported& file, TextFile& out) {
   const UnitStyle units = style_of_unit(file.unit());
   out.add("# ", file.title(), "; lengths in ", name_of(file.unit()), ", masses in ", units.mass,
-          "; of density ", file.output.density, " kg/m3\n");
+          "; of density ", file.density(), " kg/m3\n");
   out.add("# for: units ", units.name, "; dimension ", file.dimension(), "; boundary ", lammps_boundary(file),
           "; atom_style sphere; neighbor ", 0.5 * file.largest_radius(), " bin; read_data ", file.name(),
           "\n");
-  write_atoms(out, file, file.output.density / units.density, "Atoms # sphere");
+  write_atoms(out, file, file.density() / units.density, "Atoms # sphere");
 }
 
 /// The columns of an atom style; three more may follow, the image flags.
@@ -304,7 +304,7 @@ void write_atoms(TextFile& out, const Exported& file, double density, std::strin
 Format lammps_format() {
   return {.name = "lammps",
           .writes = "LAMMPS data file for read_data, atom_style sphere",
-          .keys = {"unit", "density", "types"},
+          .keys = {"unit", "material_density", "density", "types"},
           .file = "lammps.data",
           .least_dimension = 2,
           .unit = Unit::m,

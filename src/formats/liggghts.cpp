@@ -25,7 +25,7 @@ double time_step(const Exported& file) {
   double smallest = 1;
   for (const double r : file.spheres.r) smallest = std::min(smallest, r);
   const double shear_modulus = youngs_modulus / (2 * (1 + poissons_ratio));
-  return 0.2 * std::numbers::pi * smallest * std::sqrt(file.output.density / shear_modulus) /
+  return 0.2 * std::numbers::pi * smallest * std::sqrt(file.density() / shear_modulus) /
          (0.1631 * poissons_ratio + 0.8766);
 }
 
@@ -158,7 +158,7 @@ void write_liggghts(const Exported& file, StagedFolder& staged) {
   TextFile out(staged.add(file.output.file.string()));
   out.add("# ", file.title(), "; lengths in ", name_of(file.unit()), ", density in kg/m3; run by ",
           plain_text(file_beside(file.output.file, script_ending)), "\n");
-  write_atoms(out, file, file.output.density, "Atoms");
+  write_atoms(out, file, file.density(), "Atoms");
   out.close();
   std::vector<std::filesystem::path> with;
   if (file.size() > 0)
@@ -180,7 +180,7 @@ std::string remark_on_script(const Exported& file) {
 Format liggghts_format() {
   return {.name = "liggghts",
           .writes = "LIGGGHTS data file, atom_style granular, with a script that runs it and CAD walls",
-          .keys = {"density", "types"},
+          .keys = {"material_density", "density", "types"},
           .file = "liggghts.data",
           .endings = {script_ending, walls_ending},
           .least_dimension = 2,

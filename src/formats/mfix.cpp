@@ -23,7 +23,7 @@ void write_mfix(const Exported& file, TextFile& out) {
                   {"DIMENSION", std::to_string(dimension)},
                   {"PARTICLES", std::to_string(file.size())},
                   {"PHASE", has_phases ? "T" : "F          1"},
-                  {"DENSITY", fmt::format("{}", file.output.density)},
+                  {"DENSITY", fmt::format("{}", file.density())},
                   {"VELOCITY", is_flat ? "0.0 0.0" : "0.0 0.0 0.0"},
                   {"AXES", fmt::format("{}{}", is_flat ? "" : "Z   ", has_phases ? "Phase_ID   " : "")}}));
   for (std::size_t i = 0; i < file.size(); ++i) {
@@ -128,7 +128,7 @@ FileContents read_mfix(const Reading& reading) {
 Format mfix_format() {
   return {.name = "mfix",
           .writes = "MFiX-DEM particle_input.dat, version 2.0",
-          .keys = {"density", "types"},
+          .keys = {"material_density", "density", "types"},
           .file = "particle_input.dat",
           .least_dimension = 2,
           .unit = Unit::m,

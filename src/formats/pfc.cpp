@@ -26,7 +26,7 @@ void write_pfc(const Exported& file, TextFile& out) {
     if (file.type_count > 1) out.add(" group 'type_", file.types[i], "'");
     out.add('\n');
   }
-  out.add("ball attribute density ", file.output.density, '\n');
+  out.add("ball attribute density ", file.density(), '\n');
 }
 
 /// `model domain extent xl xh yl yh [zl zh] condition periodic …`
@@ -109,7 +109,7 @@ Format pfc_format() {
   return {
       .name = "pfc",
       .writes = "Itasca PFC 6 or later, commands for program call",
-      .keys = {"density", "types"},
+      .keys = {"material_density", "density", "types"},
       .file = "pfc.dat",
       .least_dimension = 2,
       .unit = Unit::m,

@@ -98,12 +98,17 @@ std::vector<double> sample(const Container& container, double reach, std::size_t
   return depths;
 }
 
+double volume_in(const Domain& shape, const LowerPart& part) {
+  const VolumeBelow below(shape, part.direction);
+  return below(part.height) - (part.from > below.lowest() ? below(part.from) : 0);
+}
+
 }  // namespace
 
 Depths::Depths(const Domain& shape, const Container& container, double reach, std::size_t points,
                const std::optional<LowerPart>& below)
     : below_(below),
-      volume_(below ? VolumeBelow(shape, below->direction)(below->height) : container.volume()) {
+      volume_(below ? volume_in(shape, *below) : container.volume()) {
   if (std::holds_alternative<Mesh>(shape) || std::holds_alternative<Revolved>(shape)) {
     shape_ = Mesh{};
     sampled_ = sample(container, reach, points, below, volume_);
@@ -131,7 +136,7 @@ double Depths::inner_share(double z) const {
   const double whole =
       std::visit([z](const auto& s) { return inner_volume(s, z) / inner_volume(s, 0); }, shape_);
   if (!below_ || !(whole > 0)) return whole;
-  const double part = VolumeBelow(with_walls_moved(shape_, z), below_->direction)(below_->height) / volume_;
+  const double part = volume_in(with_walls_moved(shape_, z), *below_) / volume_;
   return part > rounding_of_shares ? part : 0;
 }
 

@@ -8,7 +8,7 @@
 
 namespace bernal {
 
-/// The distribution of depth in a container, or in its part below a level: the share of the volume farther
+/// The distribution of depth in a container, or in its part below a level or between two: the share of the volume farther
 /// than z from the wall. Exact to rounding for a box, a cylinder and a sphere, whose points deeper than z
 /// form a smaller shape of the same kind (as long as before along periodic axes); for a mesh or a solid of
 /// revolution from points in the cells of a grid.

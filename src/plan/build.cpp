@@ -10,8 +10,10 @@
 #include "bernal/voxels/voxels.hpp"
 #include "engine/engine_plan.hpp"
 #include "plan/caution.hpp"
+#include "plan/count_mass.hpp"
 #include "plan/estimate.hpp"
 #include "plan/fitting.hpp"
+#include "plan/hints.hpp"
 #include "plan/price_effects.hpp"
 #include "plan/room_for_gaps.hpp"
 #include "plan/sizes_at_hand.hpp"
@@ -117,6 +119,7 @@ void expect_in_container(Plan& plan) {
   const SizeDistribution& radii = without_tail ? *without_tail : *plan.radii;
   require_long_periods(scene, container, radii.max());
 
+  count_mass(plan, radii, cut);
   const double mean_volume = mean_volume_of(plan, radii);
   const double volume = volume_of(container);
   double attainable = plan.attainable_packing_fraction =
@@ -258,6 +261,7 @@ void expect_in_periodic_box(Plan& plan) {
     require_fitting(scene, plan.domain, plan.container, (1 - allowed) * (in_bed ? cut : plan.radii->min()));
   }
   if (in_bed) require_long_periods(scene, plan.domain, cut);
+  count_mass(plan, radii, cut);
   const double mean_volume = mean_volume_of(plan, radii);
   double attainable = plan.attainable_packing_fraction = attainable_in_box(plan, radii);
   resolve_predicted(plan);
@@ -389,6 +393,7 @@ Plan build(const Scene& stated) {
   }
   if (any_stage(plan.scene, &StageTraits::makes_bed, true)) plan.expected_bed = expected_bed(plan);
   require_images(plan);
+  plan.hints = hints_of(plan);
   return plan;
 }
 

@@ -94,8 +94,27 @@ struct Part {
   double volume, area;                         // in the scene's unit
 };
 
-/// The whole domain; of a bed of given height what is below its surface: the area of that as in a vessel that
-/// is as wide everywhere.
+/// The area of a mesh below a level, floor and walls and what stands in it.
+double area_below(const Mesh& mesh, const Vector<3>& up, double level) {
+  double area = 0;
+  std::vector<Vector<3>> kept;
+  for (const auto& triangle : mesh.triangles) {
+    kept.clear();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector<3>&a = mesh.vertices[triangle[k]], &b = mesh.vertices[triangle[(k + 1) % 3]];
+      const double above_a = up.dot(a) - level, above_b = up.dot(b) - level;
+      if (above_a <= 0) kept.push_back(a);
+      if ((above_a < 0 && above_b > 0) || (above_a > 0 && above_b < 0))
+        kept.push_back(a + above_a / (above_a - above_b) * (b - a));
+    }
+    for (std::size_t k = 2; k < kept.size(); ++k)
+      area += 0.5 * (kept[k - 1] - kept[0]).cross(kept[k] - kept[0]).norm();
+  }
+  return area;
+}
+
+/// The whole domain; of a bed of given height what is below its surface. What walls that has is counted in a
+/// mesh, and in other vessels, and below a heap, as if they were as wide everywhere.
 Part part_to_fill(const Scene& scene, const Domain& shape, const std::shared_ptr<const Container>& made) {
   Part part{local_container(shape, made), volume_of(shape), area_of(shape)};
   const BedTarget& bed = scene.target.bed;
@@ -108,8 +127,17 @@ Part part_to_fill(const Scene& scene, const Domain& shape, const std::shared_ptr
   const double below = heights.volume_below(level), whole = part.container->volume();
   if (!(below > 0 && below < whole)) return part;
   const double share = below / whole, height = down.cwiseAbs().dot(part.container->bounds().size()) * scale;
-  const double section = part.volume / height;
-  part.area = 2 * section + share * std::max(0.0, part.area - 2 * section);
+  const auto* mesh = std::get_if<Mesh>(&shape);
+  if (mesh && top.is_level()) {
+    const Vector<3> up = -down;
+    const VolumeBelow volume_below(shape, down);
+    const double at = volume_below.lowest() + bed.above_ground, step = 1e-3 * bed.above_ground;
+    const double surface = (volume_below(at + step) - volume_below(at - step)) / (2 * step);
+    part.area = area_below(*mesh, up, at) + surface;
+  } else {
+    const double section = part.volume / height;
+    part.area = 2 * section + share * std::max(0.0, part.area - 2 * section);
+  }
   part.container = cut_by_planes(part.container, top.planes(level), below);
   part.volume *= share;
   return part;
@@ -268,6 +296,7 @@ double expected_packing_fraction(const Scene& scene, const Domain& shape, const 
     const EmptyBed bed{.dimension = dimension,
                        .relaxed = reached_by_relaxation(shape, radii, part),
                        .wall_share = wall_share(part.area, part.volume, dimension, radii),
+                       .largest = largest,
                        .evenness = std::min(1.0, radii.moment(dimension) / std::pow(largest, dimension)),
                        .share = part.volume / volume_of(shape)};
     double fraction = 0;

@@ -162,6 +162,9 @@ void take_expectations(Plan& plan, const Plan& with_room) {
   plan.absent = with_room.absent;
   if (plan.caution.empty()) plan.caution = with_room.caution;
   plan.scene.draw = with_room.scene.draw;
+  target.count = with_room.scene.target.count;
+  target.mass = with_room.scene.target.mass;
+  target.mass_counted = with_room.scene.target.mass_counted;
 }
 
 }  // namespace bernal

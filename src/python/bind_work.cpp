@@ -46,7 +46,8 @@ JobPointer explain_job(const Scene& scene) {
 }
 
 /// During the activity "estimate" there is no packing yet that an interrupt could return.
-JobPointer pack_job(const Scene& scene, std::optional<std::uint64_t> seed, int threads) {
+JobPointer pack_job(Scene scene, std::optional<std::uint64_t> seed, int threads) {
+  if (seed && scene.target.mass) scene.seed = *seed;  // of whose radii it is the mass
   return job([=](const Monitor& monitor) {
     monitor.report({"estimate", -1, {}});
     const Plan plan = build(scene);
@@ -81,6 +82,7 @@ py::array_t<T> array_of(const std::vector<T>& values) {
 /// Arrays with one entry for each sphere. A sphere in no chamber has -1.
 py::dict per_sphere(const Measurements& measured) {
   py::dict all;
+  all["coordination"] = array_of(measured.of_contacts.coordination);
   if (measured.local) {
     all["local_packing_fraction"] = array_of(measured.local->packing_fraction);
     all["cell_volume"] = array_of(measured.local->cell_volume);

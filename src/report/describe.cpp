@@ -1,5 +1,7 @@
 #include "bernal/report/describe.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -54,12 +56,32 @@ std::string describe_sizes(const Scene& scene) {
   if (!scene.draws()) return "the sizes are those of the start";
   return fmt::format("{} in {}: {}{}", scene.sizes_are_diameters ? "diameter" : "radius", name_of(scene.unit),
                      sizes_in_words(scene.sizes),
-                     scene.draw == Draw::quantiles ? "; drawn by quantiles" : "");
+                     each_once(scene.sizes)          ? ""
+                     : scene.draw == Draw::quantiles ? "; drawn by quantiles"
+                                                     : "");
+}
+
+std::string amount_in_words(const Scene& scene, double diameter, bool are_equal, std::uint64_t count) {
+  const Target& target = scene.target;
+  const double density = scene.material_density.value_or(0);
+  if (target.mass_counted)
+    return fmt::format("{:.6g} kg of {:.6g} kg/m3 in spheres {} {:.4g} {}: {} sphere{}", *target.mass_counted,
+                       density, are_equal ? "of" : "whose mean volume is that of", diameter,
+                       name_of(scene.unit), grouped(count), count == 1 ? "" : "s");
+  if (target.bulk_density_asked)
+    return fmt::format("{:.6g} kg/m3 of spheres of {:.6g} kg/m3: {} {:.4g}", *target.bulk_density_asked,
+                       density, target.bed.porosity ? "porosity" : "packing fraction",
+                       target.bed.porosity ? *target.bed.porosity : target.packing_fraction.value_or(0));
+  return {};
 }
 
 std::string describe_target(const Plan& plan) {
   const Scene& scene = plan.scene;
   std::string fraction;
+  const std::string amount =
+      amount_in_words(scene, 2 * std::cbrt(plan.radii->moment(3)), plan.radii->min() == plan.radii->max(),
+                      static_cast<std::uint64_t>(scene.target.count.value_or(0)));
+  if (!amount.empty()) return amount;
   if (scene.target.packing_fraction)
     fraction = fmt::format("packing fraction {}{}", *scene.target.packing_fraction,
                            scene.target.predicted ? ", the predicted one less its error" : "");
@@ -70,7 +92,10 @@ std::string describe_target(const Plan& plan) {
   if (!fraction.empty()) return "up to " + fraction;
   if (scene.target.fill) return "as many as can be made to fit";
   if (const BedTarget& bed = plan.scene.target.bed; bed.gives_height())
-    return fmt::format("as many as make a bed {:.6g} {} high", bed.above_ground, name_of(plan.scene.unit));
+    return fmt::format("as many as make a bed {:.6g} {} high{}", bed.above_ground, name_of(plan.scene.unit),
+                       bed.layers ? fmt::format(", {:g} mean diameters of {:.4g}", *bed.layers,
+                                                bed.above_ground / *bed.layers)
+                                  : "");
   return plan.places_expected ? "as many as are expected to fit" : "as many as fit";
 }
 

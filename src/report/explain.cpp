@@ -7,6 +7,7 @@
 
 #include "bernal/report/describe.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "report/size_summary.hpp"
 
 namespace bernal {
 namespace {
@@ -83,6 +84,8 @@ std::string_view density_in_words(const BedTarget& bed) {
 std::string explain(const Plan& plan) {
   const Scene& scene = plan.scene;
   std::string text = describe(plan);
+  text += summary_in_words(summary_of(scene, *plan.radii), scene);
+  for (const std::string& hint : plan.hints) text += fmt::format("note       {}\n", hint);
   text += fmt::format("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
   if (const auto& bed = plan.expected_bed)
     text += fmt::format(

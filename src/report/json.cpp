@@ -98,6 +98,7 @@ std::uint64_t peak_memory_bytes() {
 }
 
 Json run_json(const Packing& packing, std::uint64_t spheres, double packing_fraction) {
+  const std::optional<double> mass = mass_of(packing, packing_fraction);
   return {{"version", packing.program.version},
           {"commit", packing.program.commit},
           {"packings_number", packing.program.packings_number},
@@ -109,6 +110,7 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
           {"dimension", packing.spheres.dimension()},
           {"unit", name_of(packing.scene.unit)},
           {"phi", packing_fraction},
+          {"mass", mass ? Json(*mass) : Json()},
           {"expected_phi", packing.expected_packing_fraction},
           {"expected_phi_of_sizes", packing.expected_of_sizes},
           {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},

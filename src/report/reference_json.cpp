@@ -22,7 +22,8 @@ ReferenceJson json_of_key(const ReferenceKey& key) {
           {"words", key.words},
           {"required", key.required},
           {"is_diameter", key.is_diameter},
-          {"acts", key.acts}};
+          {"acts", key.acts},
+          {"quantity", key.quantity}};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bernal/core/vector.hpp"
@@ -27,20 +28,46 @@ SceneSchema array_of(SceneSchema items, std::size_t least, std::size_t most = 0)
   return made;
 }
 
-/// The smallest and the largest length, as in `schema::accepts`.
+/// Text that is a number with one of these units, see `number_with_unit`.
+SceneSchema with_unit(const std::string& units, const char* sign = "[-+]?") {
+  return {{"type", "string"},
+          {"pattern",
+           fmt::format(R"(^\s*{}([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?\s*({})\s*$)", sign, units)}};
+}
+SceneSchema either(SceneSchema one, SceneSchema other) {
+  return {{"anyOf", {std::move(one), std::move(other)}}};
+}
+
+constexpr const char* length_units = "nm|um|µm|μm|mm|cm|m|in|ft";
+
+/// The text that a number of that quantity may be; none where there is no unit.
+std::optional<SceneSchema> measured_text(const std::string& quantity) {
+  if (quantity == "length") return with_unit(length_units);
+  if (quantity == "spread") return with_unit("phi");
+  if (quantity == "mass") return with_unit("mg|g|kg|t|lb");
+  if (quantity == "density") return with_unit("kg/m3|kg/m³|g/cm3|g/cm³");
+  return std::nullopt;
+}
+
+/// The smallest and the largest length, as in `schema::accepts`; phi is of diameters of grains, which differ
+/// from other lengths in that only.
 SceneSchema basic_definitions() {
-  const SceneSchema length = {{"type", "number"}, {"minimum", 1e-30}, {"maximum", 1e30}};
+  const SceneSchema plain = {{"type", "number"}, {"minimum", 1e-30}, {"maximum", 1e30}};
+  const SceneSchema component = {{"type", "number"}, {"minimum", -1e30}, {"maximum", 1e30}};
+  const SceneSchema length = {{"anyOf", {plain, with_unit(length_units, R"(\+?)"), with_unit("phi")}}};
   const SceneSchema not_zero = {
       {"anyOf", {SceneSchema{{"minimum", 1e-30}}, SceneSchema{{"maximum", -1e-30}}}}};
   const SceneSchema file = {{"type", "string"}, {"pattern", R"(^[^\u0000]+$)"}};
-  SceneSchema direction = array_of(refers_to("coordinate"), 3, 3);
-  SceneSchema push = array_of(refers_to("coordinate"), 2, 3);
+  SceneSchema direction = array_of(refers_to("component"), 3, 3);
+  SceneSchema push = array_of(refers_to("component"), 2, 3);
   direction["contains"] = push["contains"] = not_zero;
   SceneSchema axes = array_of({{"type", "integer"}, {"minimum", 0}, {"maximum", max_dimension - 1}}, 1);
   axes["uniqueItems"] = true;
   return {
       {"length", length},
-      {"coordinate", {{"type", "number"}, {"minimum", -1e30}, {"maximum", 1e30}}},
+      {"positive", plain},
+      {"component", component},
+      {"coordinate", either(component, with_unit(length_units))},
       {"file", file},
       {"direction", direction},
       {"push", push},
@@ -53,8 +80,9 @@ SceneSchema basic_definitions() {
       {"lines", array_of(refers_to("points"), 0)},
       {"coordinates", array_of(refers_to("coordinate"), 1)},
       {"lengths", array_of(refers_to("length"), 1)},
-      {"shares", array_of(refers_to("length"), 1)},
-      {"amounts", array_of({{"anyOf", {SceneSchema{{"const", 0}}, refers_to("length")}}}, 1)},
+      {"lengths_from_zero", array_of(either({{"const", 0}}, refers_to("length")), 1)},
+      {"shares", array_of(refers_to("positive"), 1)},
+      {"amounts", array_of({{"anyOf", {SceneSchema{{"const", 0}}, refers_to("positive")}}}, 1)},
       {"axes", axes},
   };
 }
@@ -83,7 +111,12 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "word") return one_of_words(key);
   if (key.type == "distribution") return refers_to(key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
-  SceneSchema value = key.type == "number" || key.type == "integer" ? within_range(key) : refers_to(key.type);
+  const bool from_zero = key.type == "lengths" && key.min == 0;
+  SceneSchema value = key.type == "number" || key.type == "integer"
+                          ? within_range(key)
+                          : refers_to(from_zero ? "lengths_from_zero" : key.type);
+  if (const auto text = measured_text(key.quantity); text && key.type == "number")
+    value = either(std::move(value), *text);
   if (key.words.empty()) return value;
   const SceneSchema word = one_of_words(key);
   if (key.type == "names") return {{"anyOf", {word, array_of(word, 1)}}};
@@ -171,10 +204,9 @@ void define_group(const ReferenceGroup& group, const std::string& name, SceneSch
   if (is_size) choice.push_back(refers_to("length"));
   for (const ReferenceTable& given : group.tables) {
     std::optional<ReferenceTable> table = given;
-    const bool needed = std::ranges::any_of(
-        given.keys, [](const ReferenceKey& key) { return key.is_diameter && key.required; });
-    const bool in_choice = !given.choices.empty();
-    if (name == "radius") table = needed && !in_choice ? std::nullopt : as_radii(given);
+    // Of percentiles two or more are needed, which this schema does not say.
+    const bool has_diameters = std::ranges::any_of(given.keys, &ReferenceKey::is_diameter);
+    if (name == "radius") table = has_diameters && given.choices.empty() ? std::nullopt : as_radii(given);
     if (!table) continue;
     const bool depends = std::ranges::any_of(
         given.keys, [](const ReferenceKey& key) { return key.is_diameter || key.type == "parts"; });

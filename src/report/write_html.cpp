@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
+#include "report/describe.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
 #include "report/report_style.hpp"
@@ -84,6 +86,20 @@ void write_headline(Page& page, const Report& report) {
            escaped(report.certificate.statement));
 }
 
+/// The sum by which an amount became a number of spheres, and what is there.
+void write_amount(Page& page, const Packing& packing) {
+  const std::vector<double>& radii = packing.spheres.r;
+  if (radii.empty()) return;
+  const auto [least, most] = std::ranges::minmax(radii);
+  const double mean = std::cbrt(3 * packing.packing_fraction() * packing.volume /
+                                (4 * std::numbers::pi * static_cast<double>(radii.size())));
+  const std::string amount = amount_in_words(packing.scene, 2 * mean, least == most, radii.size());
+  if (!amount.empty()) page.add("<p>{}.</p>\n", escaped(amount));
+  if (const auto mass = mass_of(packing, packing.packing_fraction()))
+    page.add("<p>The spheres weigh {:.6g} kg, of {:.6g} kg/m³ each.</p>\n", *mass,
+             *packing.scene.material_density);
+}
+
 void write_scene(Page& page, const Report& report, std::string_view scene) {
   const Packing& packing = report.packing;
   const std::string unit = escaped(name_of(packing.scene.unit));
@@ -99,6 +115,7 @@ void write_scene(Page& page, const Report& report, std::string_view scene) {
   if (const auto* mesh = std::get_if<Mesh>(&packing.domain))
     page.add(", with {} triangles", grouped(mesh->triangles.size()));
   page.add(". Seed {}. Every length is in {}.</p>\n", packing.seed, unit);
+  write_amount(page, packing);
   page.add(
       "<details><summary>The scene as it was run, with every default written out</summary><pre>{}</pre>"
       "</details>\n",

@@ -184,6 +184,7 @@ class Run {
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, supply->largest());
     supply->divide_by(frame_.scale);
+    task.frame = frame_;
     task.target.bed.above_ground /= frame_.scale;
     if (any_in_bed_)
       task.exact_place = [this](const Vector<3>& place, double r) { return exact_place_.near(place, r); };

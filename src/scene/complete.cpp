@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <set>
+#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "scene/complete_list.hpp"
 #include "scene/output_table.hpp"
+#include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
@@ -75,20 +78,25 @@ void check_target(const Scene& scene) {
     fail(
         "a bed of given height needs sizes to draw spheres from: give \"diameter\" or \"radius\" in "
         "[spheres] too");
-  if (target.bed.gives_height() && (target.count || target.has_packing_fraction() || target.fill))
+  if (all_are_there && target.mass)
+    fail("a \"mass\" needs sizes to draw spheres from: give \"diameter\" or \"radius\" in [spheres] too");
+  if (target.mass && scene.dimension() != 3)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("a \"mass\" is of spheres in three dimensions, not in {}: give a \"count\"",
+                            scene.dimension()),
+                target.where);
+  if (target.bed.gives_height() && (target.has_count() || target.has_packing_fraction() || target.fill))
     fail(
         "the height of a bed in [spheres] says how many spheres there are: leave \"count\", "
         "\"packing_fraction\" and \"fill\" out");
-  if (target.count && target.has_packing_fraction() && !scalable)
+  if (target.has_count() && target.has_packing_fraction() && !scalable)
     fail(
-        "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
-        "together only in a periodic box without size)");
-  if (scalable && !target.count && !all_are_there)
+        target.mass
+            ? "\"mass\" and a packing fraction in [spheres] exclude each other; give one of them"
+            : "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
+              "together only in a periodic box without size)");
+  if (scalable && !target.has_count() && !all_are_there)
     fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
-}
-
-bool has_fixed_walls(const PeriodicBox& box) {
-  return !box.walls.empty() && box.dimension == 3 && !box.scalable;
 }
 
 /// The stage that packs any scene, or makes the bed that is asked for; in a bed of two dimensions all that
@@ -146,7 +154,7 @@ void require_end(const Scene& scene) {
   for (const Stage& stage : scene.stages)
     if (const StageTable& table = table_of(stage);
         table.traits.fills_given_box && !target.has_packing_fraction() &&
-        ((!target.count && !is_start_alone(scene)) || (box && box->scalable)))
+        ((!target.has_count() && !is_start_alone(scene)) || (box && box->scalable)))
       throw Error(ErrorCode::bad_scene,
                   fmt::format("\"{}\" fills a box of given size to a given end: give \"packing_fraction\" in "
                               "[spheres], or \"count\" and the size of the box",
@@ -221,7 +229,9 @@ void complete_stages(Scene& scene) {
   }
   require_end(scene);
   require_bed(scene);
-  if (!scene.draw && keeps_sizes) scene.draw = Draw::quantiles;
+  const auto* classes = std::get_if<Classes>(&scene.sizes);  // weighed out, and so met to a sphere
+  const bool is_weighed = classes && classes->basis == Basis::mass;
+  if (!scene.draw && (keeps_sizes || is_weighed)) scene.draw = Draw::quantiles;
 }
 
 /// Every output has a name of its own, and none of the result's.
@@ -286,6 +296,15 @@ void complete_output(Output& output, const Scene& scene) {
                                         "bridges and caps are for {}",
                                         table.name(), fmt::join(others, ", ")));
   }
+  if (const auto& said = section.locations.keys;
+      said.contains("density") && said.contains("material_density"))
+    section.fail("density",
+                 fmt::format("\"density\" in {} is an older name of \"material_density\"; give one "
+                             "of them",
+                             section.name));
+  constexpr double glass = 2500;
+  if (!output.material_density && table.keys.find("material_density"))
+    output.material_density = scene.material_density.value_or(glass);
   for (const Key& key : table.keys.keys)
     if (const auto users = contacts_that_use(key, output);
         !users.empty() && section.locations.keys.contains(key.name))
@@ -319,6 +338,8 @@ void complete(Scene& scene) {
   const Section section{"[container]", scene.container.locations};
   check(container, schema::options_of(std::as_const(scene.container)), section);
   if (container.complete) container.complete(schema::options_of(scene.container), scene, section);
+  take_porosity(scene);
+  complete_list(scene);
   check_target(scene);
   if (!is_start_alone(scene))
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",

@@ -31,6 +31,25 @@ std::optional<Value> Key::of(const void* options) const {
   return value && !unsaid.empty() && toml_text(*value) == unsaid ? std::nullopt : value;
 }
 
+Quantity Key::measured() const {
+  if (quantity != Quantity::none) return quantity;
+  switch (type) {
+    case Type::length:
+    case Type::position:
+    case Type::corner:
+    case Type::extents:
+    case Type::points:
+    case Type::lines:
+    case Type::coordinates:
+    case Type::lengths:
+    case Type::distribution:
+    case Type::parts:
+      return Quantity::length;
+    default:
+      return Quantity::none;
+  }
+}
+
 Key unless(std::string otherwise, Key key) {
   key.unsaid = std::move(otherwise);
   return key;

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "bernal/core/quantity.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/scene/scene.hpp"
 
@@ -39,7 +40,7 @@ enum class Type {
   points,        ///< array of three [x, y] or more, a closed line
   lines,         ///< array of such
   coordinates,   ///< array of numbers in the scene's unit
-  lengths,       ///< array of lengths
+  lengths,       ///< array of lengths; of at least 0 where the range begins there
   shares,        ///< array of positive numbers
   amounts,       ///< array of numbers of at least 0
   axes,          ///< array of axes, counted from 0, each once
@@ -144,10 +145,14 @@ struct Key {
   std::vector<Value> ladder = {};
   bool is_limit = false;    ///< it buys that only where a run ends at it
   std::string unsaid = {};  ///< the value, as TOML, that is not written; none if empty
+  /// Of a number: whose unit may stand with it, in text; and of lengths that are diameters of grains.
+  Quantity quantity = Quantity::none;
 
   /// What is written of it, nothing where it goes without saying.
   std::optional<Value> of(const void* options) const;
   bool acts_here(bool in_bed) const { return acts == Acts::everywhere || (acts == Acts::in_bed) == in_bed; }
+  /// Of what its numbers are.
+  Quantity measured() const;
 };
 
 using Text = std::string_view;
@@ -176,6 +181,11 @@ inline Key names(Member member, Text name, Text help, std::vector<std::string_vi
 Key word(const Member& member, Text name, Text help, std::vector<std::string_view> words);
 /// A key that is said only where it is not `otherwise`.
 Key unless(std::string otherwise, Key key);
+/// Numbers of that quantity.
+inline Key of_quantity(Quantity quantity, Key key) {
+  key.quantity = quantity;
+  return key;
+}
 inline Key required(Key key) {
   key.required = true;
   return key;
@@ -221,7 +231,7 @@ struct Entry {
   std::function<void(const void*, const Section&)> rule = {};
   /// Fills in what depends on the rest of the scene, where it is left out.
   std::function<void(void*, Scene&, const Section&)> complete = {};
-  /// Of a distribution that may stand in a "file": the keys that the file's columns are.
+  /// Of a distribution that may stand in a "file": the keys that the file's columns are, one or two.
   std::vector<std::string_view> columns = {};
   std::shared_ptr<const void> defaults = {};  ///< a struct as it is made
 

@@ -21,15 +21,26 @@ static schema::Member name_of_output() {
   return member;
 }
 
+/// Takes a value and is never written.
+static schema::Member older_name_of_density() {
+  schema::Member member(&Output::material_density);
+  member.get = [](const void*) -> std::optional<schema::Value> { return std::nullopt; };
+  return member;
+}
+
 const std::vector<schema::Key>& output_keys() {
   using namespace schema;
   static const std::vector<Key> all = {
       key(Type::file, name_of_output(), "file",
           "its name in the folder of the result; if absent that of the format"),
-      word(&Output::unit, "unit",
-           "of its lengths; if absent the one that the program expects",
+      word(&Output::unit, "unit", "of its lengths; if absent the one that the program expects",
            {unit_names().begin(), unit_names().end()}),
-      number(&Output::density, "density", "of the spheres, in kg/m3; 2500 is glass", above(0, 1e30)),
+      of_quantity(Quantity::density,
+                  number(&Output::material_density, "material_density",
+                         "of the spheres, in kg/m3; if absent the scene's, else that of glass, 2500",
+                         above(0, 1e30))),
+      of_quantity(Quantity::density, number(older_name_of_density(), "density",
+                                            "an older name of material_density", above(0, 1e30))),
       integer(
           &Output::types, "types",
           "so many types of spheres, classes of radii of equal width; if absent one for every radius where "

@@ -115,14 +115,15 @@ class Reader {
     read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
   }
 
-  void read_spheres(const toml::table& table, Scene& scene) const {
+  void read_spheres(const toml::table& table, Scene& scene) {
+    sizes_are_diameters_ = table.contains("diameter");
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
     if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start"))
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
     scene.target.where = at(table.source());
-    for (const char* key :
-         {"bed", "top", "height", "bed_layers", "porosity", "count", "packing_fraction", "fill"})
+    for (const char* key : {"bed", "top", "height", "bed_layers", "porosity", "bulk_density", "count", "mass",
+                            "packing_fraction", "fill"})
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
   }
 
@@ -201,13 +202,27 @@ class Reader {
     return static_cast<std::size_t>(found - names.begin());
   }
 
+  /// The node as a value, whatever the key accepts. Refuses text that is no number with its unit where one is
+  /// meant.
+  std::optional<Value> value_of(const toml::node& node, const Key& key, const std::string& where) const {
+    Measured measured{key.measured(), unit_};
+    if (measured.quantity == Quantity::diameter && !sizes_are_diameters_)
+      measured.quantity = Quantity::length;
+    const bool line = key.type == Type::points;
+    try {
+      return line || key.type == Type::lines ? lines_in(node, line, measured)
+             : key.type == Type::names       ? names_in(node, measured)
+                                             : value_in(node, key.type != Type::integer, measured, key.words);
+    } catch (const Error& error) {
+      fail(node.source(), "\"{}\" in {} must be {}, not {}: {}", key.name, where, schema::expectation(key),
+           written(node), error.what());
+    }
+  }
+
   Value read_value(const toml::node& node, const Key& key, const std::string& where) const {
     if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
     if (key.type == Type::parts) return read_parts(node, key, where);
-    const bool line = key.type == Type::points;
-    const std::optional<Value> value = line || key.type == Type::lines ? lines_in(node, line)
-                                       : key.type == Type::names       ? names_in(node)
-                                                                 : value_in(node, key.type != Type::integer);
+    const std::optional<Value> value = value_of(node, key, where);
     if (value && schema::accepts(key, *value)) return *value;
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
@@ -244,16 +259,22 @@ class Reader {
                                  : std::ranges::find(entry.columns, key.name) != entry.columns.end();
   }
 
+  static constexpr std::size_t most_listed = 20'000'000;
+
   /// Puts what stands in the file in its place, so that the scene is whole without the file.
   void take_columns(const toml::node& node, const Entry& entry, const std::string& where, void* options,
                     Locations& locations) const {
     const std::string file = std::get<std::string>(read_value(node, *entry.find("file"), where));
     const Location at_file = locations.of("file");
     if (entry.columns.empty()) return take_points(file, entry, where, options, locations);
-    const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
+    std::vector<const Key*> keys;
+    for (const std::string_view column : entry.columns) keys.push_back(entry.find(column));
+    const bool is_list = keys.size() == 1;
     try {
       // More points are measurements, not a distribution; and a scene has to hold them.
-      const auto columns = read_columns(beside(at_file, file), {keys, unit_, 4096, "sum them up in fewer"});
+      const auto columns = read_columns(
+          beside(at_file, file), {keys, unit_, is_list ? most_listed : 4096,
+                                  is_list ? "take a histogram of them" : "sum them up in fewer"});
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
@@ -297,8 +318,8 @@ class Reader {
       read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
       return sizes;
     }
-    const auto value = value_in(node, true);
     const Key length = {.name = key.name, .type = Type::length};
+    const auto value = value_of(node, schema::of_quantity(Quantity::diameter, key), where);
     if (!value || !schema::accepts(length, *value))
       fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
            written(node));
@@ -332,6 +353,7 @@ class Reader {
   std::filesystem::path path_;
   std::string file_;
   Unit unit_ = {};  ///< of the scene, once it is read
+  bool sizes_are_diameters_ = false;
 };
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "scene/read_value.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/core/error.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
@@ -34,18 +36,29 @@ std::string written(const toml::node& node) {
   return "a date or time";
 }
 
-/// The number in a node, to the nearest double. -0 is 0.
-static double number_in(const toml::node& node) {
+/// The number in a node, to the nearest double. -0 is 0. Nothing where there is none.
+static std::optional<double> number_in(const toml::node& node, const Measured& measured) {
   if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
-  return node.as_floating_point()->get() + 0.0;
+  if (const auto* number = node.as_floating_point()) return number->get() + 0.0;
+  const auto* text = node.as_string();
+  if (!text || measured.quantity == Quantity::none) return std::nullopt;
+  std::string complaint;
+  const auto value = number_with_unit(text->get(), measured.quantity, measured.unit, complaint);
+  if (!value) throw Error(ErrorCode::bad_argument, complaint);
+  return value;
 }
 
-std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
+std::optional<schema::Value> value_in(const toml::node& node, bool as_double, const Measured& measured,
+                                      const std::vector<std::string_view>& words) {
   if (const auto* flag = node.as_boolean()) return flag->get();
-  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* text = node.as_string()) {
+    if (measured.quantity == Quantity::none || std::ranges::find(words, text->get()) != words.end())
+      return text->get();
+    return number_in(node, measured);
+  }
   if (const auto* number = node.as_integer(); number && !as_double) return number->get();
   if (node.is_number()) {
-    const double number = number_in(node);
+    const double number = *number_in(node, measured);
     const bool is_whole = number == std::floor(number) && std::abs(number) <= 0x1p53;
     if (is_whole && !as_double) return static_cast<std::int64_t>(number);
     return number;
@@ -54,21 +67,23 @@ std::optional<schema::Value> value_in(const toml::node& node, bool as_double) {
   if (!array) return std::nullopt;
   std::vector<double> numbers;
   for (const toml::node& item : *array) {
-    if (!item.is_number()) return std::nullopt;
-    numbers.push_back(number_in(item));
+    const std::optional<double> number = number_in(item, measured);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
   }
   return numbers;
 }
 
-std::optional<schema::Value> lines_in(const toml::node& node, bool one) {
-  const auto line_in = [](const toml::node& of, std::vector<Vector<2>>& line) {
+std::optional<schema::Value> lines_in(const toml::node& node, bool one, const Measured& measured) {
+  const auto line_in = [&](const toml::node& of, std::vector<Vector<2>>& line) {
     const toml::array* points = of.as_array();
     if (!points) return false;
     for (const toml::node& item : *points) {
       const toml::array* point = item.as_array();
-      if (!point || point->size() != 2 || !point->get(0)->is_number() || !point->get(1)->is_number())
-        return false;
-      line.emplace_back(number_in(*point->get(0)), number_in(*point->get(1)));
+      if (!point || point->size() != 2) return false;
+      const auto x = number_in(*point->get(0), measured), y = number_in(*point->get(1), measured);
+      if (!x || !y) return false;
+      line.emplace_back(*x, *y);
     }
     return true;
   };
@@ -82,11 +97,21 @@ std::optional<schema::Value> lines_in(const toml::node& node, bool one) {
   return polygon;
 }
 
-std::optional<schema::Value> names_in(const toml::node& node) {
+/// "z < 5 mm" as "z < 5".
+static std::string without_unit(const std::string& name, const Measured& measured) {
+  const std::size_t sign = name.find_last_of("=<>");
+  if (measured.quantity == Quantity::none || sign == std::string::npos) return name;
+  std::string complaint;
+  const auto value =
+      number_with_unit(std::string_view(name).substr(sign + 1), measured.quantity, measured.unit, complaint);
+  return value ? fmt::format("{} {}", name.substr(0, sign + 1), *value) : name;
+}
+
+std::optional<schema::Value> names_in(const toml::node& node, const Measured& measured) {
   std::vector<std::string> names;
   const auto take = [&](const toml::node& item) {
     if (const auto* text = item.as_string())
-      names.push_back(text->get());
+      names.push_back(without_unit(text->get(), measured));
     else if (const auto* number = item.as_integer())
       names.push_back(fmt::format("{}", number->get()));
     else

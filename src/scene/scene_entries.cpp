@@ -84,6 +84,12 @@ Member of_start(M Start::*member) {
 }
 
 void spheres_rule(const Scene& scene, const Section& section) {
+  for (const std::string_view amount : {"mass", "bulk_density"})
+    if (!scene.material_density && (amount == "mass" ? scene.target.mass : scene.target.bulk_density))
+      section.fail(amount,
+                   fmt::format("\"{}\" in [spheres] needs the \"material_density\" of the spheres, in "
+                               "kg/m3, such as 2500 for glass",
+                               amount));
   if (const BedTarget& bed = scene.target.bed; bed.heap_angle && bed.top != BedTarget::Top::heap)
     section.fail("heap_angle",
                  "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
@@ -229,6 +235,11 @@ const Entry& spheres_entry() {
                         "much as is predicted, less the error of that",
                         packing_fractions()),
                  flag(fill(), "fill", "true: as many spheres as the stages can place", {1, 1}),
+                 of_quantity(Quantity::mass,
+                             number(Member(&Target::mass).inside(&Scene::target), "mass",
+                                    "of all spheres, \"2 kg\" or in kg, in place of a count: with the "
+                                    "material_density as many as weigh that",
+                                    above(0, largest_length))),
                  length(of_bed(&BedTarget::height), "height",
                         "of a bed: as many spheres as make its surface lie so high above the lowest point"),
                  number(of_bed(&BedTarget::layers), "bed_layers",
@@ -245,16 +256,26 @@ const Entry& spheres_entry() {
                         "of the flanks of a heap with the level, in degrees; if absent 20", above(0, 45)),
                  number(of_bed(&BedTarget::porosity), "porosity",
                         "of a bed, up to its surface, in place of bed = …: the share of the volume that is "
-                        "left free",
+                        "left free; where there is no bed, 1 - packing_fraction",
                         between(0.2, 0.95)),
+                 of_quantity(Quantity::density,
+                             number(Member(&Target::bulk_density).inside(&Scene::target), "bulk_density",
+                                    "in kg/m3, in place of a porosity: 1 - bulk_density / material_density",
+                                    above(0, largest_length))),
+                 of_quantity(Quantity::density,
+                             number(&Scene::material_density, "material_density",
+                                    "of the spheres themselves, in kg/m3: 2500 is glass, 7850 steel",
+                                    above(0, largest_length))),
                  key(Type::distribution, sizes(false), "radius", "lengths are radii"),
                  key(Type::distribution, sizes(true), "diameter", "lengths are diameters"),
-                 number(&Scene::gap, "gap",
-                        "least distance between the surfaces of two spheres, and of a sphere and its own "
-                        "image",
-                        {0, largest_length}),
-                 number(&Scene::wall_gap, "wall_gap", "least distance of a sphere's surface from the walls",
-                        {0, largest_length}),
+                 of_quantity(Quantity::length,
+                             number(&Scene::gap, "gap",
+                                    "least distance between the surfaces of two spheres, and of a sphere "
+                                    "and its own image",
+                                    {0, largest_length})),
+                 of_quantity(Quantity::length, number(&Scene::wall_gap, "wall_gap",
+                                                      "least distance of a sphere's surface from the walls",
+                                                      {0, largest_length})),
                  word(&Scene::draw, "draw",
                       "sizes at random, or quantiles: evenly over the distribution; if absent quantiles "
                       "where relax or grow packs a container, and wherever few spheres carry much of the "
@@ -279,8 +300,10 @@ const Entry& spheres_entry() {
                      {"count", "packing_fraction"},
                      {"height"},
                      {"bed_layers"},
+                     {"mass"},
+                     {"mass", "packing_fraction"},
                      {}},
-                    {{"bed"}, {"porosity"}, {}},
+                    {{"bed"}, {"porosity"}, {"bulk_density"}, {}},
                     {{"radius"}, {"diameter"}}},
         .rule = rule(spheres_rule)};
     of.keys[1].words = {"predicted"};
@@ -359,11 +382,13 @@ const std::vector<Entry>& container_entries() {
                     length(&MeshFile::largest_hole, "largest_hole",
                            "holes up to this width are closed; if absent up to half of the part's: what "
                            "is wider is an open top"),
-                    names(&MeshFile::cap, "cap",
-                          "planes that close open ends, \"z = 1.1\" or \"x < 0.5\": what they cut off is "
-                          "outside"),
-                    number(&MeshFile::fill_level, "fill_level", "what lies higher than this z is outside",
-                           {-largest_length, largest_length}),
+                    of_quantity(Quantity::length,
+                                names(&MeshFile::cap, "cap",
+                                      "planes that close open ends, \"z = 1.1\" or \"x < 5 mm\": what they "
+                                      "cut off is outside")),
+                    of_quantity(Quantity::length, number(&MeshFile::fill_level, "fill_level",
+                                                         "what lies higher than this z is outside",
+                                                         {-largest_length, largest_length})),
                     unless("\"solid\"", interior_key()),
                     names(&MeshFile::sha256, "sha256",
                           "of the file, then of every obstacle, as sha256sum prints it: with other bytes "

@@ -18,6 +18,8 @@ constexpr std::string_view type_words[] = {
 static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::parts) + 1);
 /// In the order of schema::Acts.
 constexpr std::string_view acts_words[] = {"everywhere", "in_bed", "in_box"};
+/// In the order of Quantity.
+constexpr std::string_view quantity_words[] = {"none", "length", "diameter", "spread", "mass", "density"};
 
 ReferenceKey described(const Entry& entry, const schema::Key& key) {
   ReferenceKey made{.name = std::string(key.name),
@@ -31,7 +33,8 @@ ReferenceKey described(const Entry& entry, const schema::Key& key) {
                     .words = {key.words.begin(), key.words.end()},
                     .required = key.required,
                     .is_diameter = key.is_diameter,
-                    .acts = std::string(acts_words[static_cast<std::size_t>(key.acts)])};
+                    .acts = std::string(acts_words[static_cast<std::size_t>(key.acts)]),
+                    .quantity = std::string(quantity_words[static_cast<std::size_t>(key.measured())])};
   const auto otherwise = key.required ? std::nullopt : key.of(entry.defaults.get());
   if (otherwise && key.type != schema::Type::distribution) made.otherwise = toml_text(*otherwise);
   return made;

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/quantity.hpp"
+#include "bernal/core/text.hpp"
 #include "files/file_kind.hpp"
 #include "files/input_file.hpp"
 
@@ -34,6 +36,25 @@ void require_shallow(std::string_view text, const std::string& file) {
     if (!in_key) parts = 1;
     line += c == '\n';
   }
+}
+
+/// What a line most likely means that is no TOML because of a number with a comma, or with a unit but without
+/// quotes; empty where it has none.
+std::string remedy_of_number(std::string_view text, std::size_t line) {
+  for (; line > 1 && !text.empty(); --line)
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  text = text.substr(0, text.find_first_of("\n#"));
+  for (std::size_t at = text.find('='); at != std::string_view::npos; at = text.find('=', at + 1)) {
+    const std::string_view rest = trimmed(text.substr(at + 1));
+    if (const auto with_point = without_decimal_comma(rest.substr(0, rest.find_first_of("]} \t"))))
+      return fmt::format("; a decimal comma? write a point, {}", *with_point);
+    const std::string_view value = trimmed(rest.substr(0, rest.find_first_of(",]}")));
+    std::string complaint;
+    for (const Quantity of : {Quantity::diameter, Quantity::mass, Quantity::density})
+      if (number_with_unit(value, of, Unit::m, complaint))
+        return fmt::format("; a number with its unit stands in quotes, \"{}\"", value);
+  }
+  return {};
 }
 
 }  // namespace
@@ -67,8 +88,10 @@ toml::table parse_toml(std::string_view text, const std::filesystem::path& name)
     std::string what(error.description());
     std::ranges::replace_if(
         what, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-    throw Error(ErrorCode::bad_scene, fmt::format("this is not TOML: {}", what),
-                location_of(error.source(), file));
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("this is not TOML: {}{}", what, remedy_of_number(text, error.source().begin.line)),
+        location_of(error.source(), file));
   }
 }
 

@@ -88,6 +88,33 @@ TEST_F(Measure, WritesTheLocalPackingOfEverySphereAndReplacesNothingElse) {
   }
 }
 
+TEST_F(Measure, WritesAllContactsAsWhatTheNameEndsIn) {
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  for (int twice = 0; twice < 2; ++twice) {
+    for (const char* name : {"c.csv", "c.npy", "c.vtp"}) {
+      const Ended ended = with(discs, {"--contacts", file(name), "--gap", "0.001", "--json"});
+      EXPECT_EQ(ended.status, 0) << ended.err;
+      const auto measured = nlohmann::json::parse(ended.out);
+      EXPECT_EQ(measured.at("fabric"), nlohmann::json::parse("[[0.5, 0.0], [0.0, 0.5]]"));
+      EXPECT_EQ(measured.at("spheres_by_contacts"), nlohmann::json::parse("[0, 0, 0, 0, 2]"));
+    }
+    // Each disc touches the other on both sides, and its own image.
+    const std::string text = text_of(folder / "c.csv");
+    EXPECT_TRUE(text.starts_with("# unit: mm\ni,j,gap,n0,n1,x0,x1\n0,0,0,0,")) << text;
+    for (const std::string line : {"\n0,1,0,1,0,2,1\n", "\n0,1,0,-1,0,0,1\n", "\n1,1,0,0,"})
+      EXPECT_NE(text.find(line), std::string::npos) << line << text;
+    EXPECT_EQ(std::ranges::count(text, '\n'), 2 + 4);
+    EXPECT_NE(text_of(folder / "c.npy").find("(4, 7)"), std::string::npos);
+    EXPECT_NE(text_of(folder / "c.vtp").find("NumberOfLines=\"4\""), std::string::npos);
+  }
+  folder.write("mine.csv", "1,2,3\n");
+  folder.write("mine.npy", "1,2,3\n");
+  for (const char* name : {"spheres.csv", "mine.csv", "mine.npy", "c.txt"})
+    expect_refused_in_one_line(with(discs, {"--contacts", file(name)}), {name});
+  EXPECT_EQ(text_of(folder / "spheres.csv"), discs);
+  EXPECT_EQ(text_of(folder / "mine.csv"), "1,2,3\n");
+}
+
 /// Two discs that nothing holds: the count of rattlers would say nothing, and neither does it stand there.
 TEST_F(Measure, SaysOfDiscsBetweenWallsWhatIsSo) {
   folder.write(

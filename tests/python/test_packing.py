@@ -151,6 +151,27 @@ class Runs(InFolder):
         self.assertEqual(packing.coordination([0.002])[0], bernal.measure(packing).coordination)
         self.refuses(bernal.InputError, "from 0 to 1", lambda: packing.coordination([2]))
 
+    def test_contacts_one_by_one(self):
+        packing = bernal.pack(small())
+        contacts, measured = packing.contacts(0.01), bernal.measure(packing, gap=0.01)
+        self.assertEqual(len(contacts.i), measured.contacts)
+        self.assertEqual((contacts.normal.shape, contacts.place.shape), ((len(contacts.i), 3), (len(contacts.i), 3)))
+        np.testing.assert_allclose(np.linalg.norm(contacts.normal, axis=1), 1)
+        ends = np.bincount(contacts.i, minlength=300) + np.bincount(contacts.j, minlength=300)
+        np.testing.assert_array_equal(ends, measured.per_sphere.coordination)
+        self.assertAlmostEqual(ends.mean(), measured.coordination, 12)
+        fabric = np.einsum("ca,cb->ab", contacts.normal, contacts.normal) / len(contacts.i)
+        np.testing.assert_allclose(fabric, np.array(measured.fabric), atol=1e-12)
+        apart = packing.centers[contacts.j] - packing.centers[contacts.i]
+        size = packing.bounds[1] - packing.bounds[0]
+        apart -= size * np.round(apart / size)
+        gaps = np.linalg.norm(apart, axis=1) - packing.radii[contacts.i] - packing.radii[contacts.j]
+        np.testing.assert_allclose(contacts.gap, gaps, atol=1e-12)
+        vessel = bernal.pack(bernal.Scene(bernal.Cylinder(3, 6), diameters=1, count=40))
+        walls = vessel.contacts(0.02)
+        self.assertEqual(np.sum(walls.j == -1), bernal.measure(vessel, gap=0.02).wall_contacts)
+        self.refuses(bernal.InputError, "from 0 to 1", lambda: packing.contacts(2))
+
     def test_exports_and_imports(self):
         packing = bernal.pack(small())
         bernal.export(packing, "lammps", "bed.data", unit="m", density=1000)

@@ -45,7 +45,7 @@ TEST(OutputScene, IsReadAndWritten) {
   const Scene scene = with_output("format = \"lammps\"\nfile = \"mine.data\"\ndensity = 1200\ntypes = 3");
   ASSERT_EQ(scene.outputs.size(), 1u);
   EXPECT_EQ(scene.outputs[0].file, "mine.data");
-  EXPECT_EQ(scene.outputs[0].density, 1200);
+  EXPECT_EQ(scene.outputs[0].material_density, 1200);
   EXPECT_EQ(scene.outputs[0].types, 3);
   EXPECT_EQ(scene.outputs[0].unit, Unit::m);
   expect_equal(scene, parse_scene(scene_as_toml(scene), "s.toml"));

@@ -15,7 +15,9 @@ struct BedTarget {
   std::optional<Density> density = {};
   std::optional<Top> top = {};
   std::optional<double> heap_angle = {};  ///< of the cone with the level, in degrees
-  /// Share of the bed's volume, up to its surface, that is left free, in place of the density's.
+  /// Share of the bed's volume, up to its surface, that is left free, in place of the density's. Where there
+  /// is no bed, in periodic boxes without a floor, for discs and for stages that make none, `complete` makes
+  /// it the target's packing fraction.
   std::optional<double> porosity = {};
   /// Of its surface above the lowest point of the container, in place of a count; or that in mean diameters.
   std::optional<double> height = {}, layers = {};

@@ -106,4 +106,8 @@ struct Packing {
   double packing_fraction() const;
 };
 
+/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`; nothing
+/// where that is not said, and in other than three dimensions.
+std::optional<double> mass_of(const Packing&, double packing_fraction);
+
 }  // namespace bernal

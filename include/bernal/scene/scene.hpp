@@ -88,12 +88,20 @@ struct Target {
   /// `packing_fraction = "predicted"`: `build` puts in a number, what is predicted less the error of that.
   bool predicted = false;
   bool fill = false;  ///< as many as the stages can place, at any price
+  /// Of all spheres, in kg, in place of `count`, into which `build` makes it, within half a sphere: it then
+  /// leaves it in `mass_counted`. Needs `Scene::material_density`.
+  std::optional<double> mass = {};
+  /// In kg/m³: the packing fraction times `Scene::material_density`. `complete` makes it into what a porosity
+  /// becomes, see `BedTarget`, and leaves it in `bulk_density_asked`.
+  std::optional<double> bulk_density = {};
+  std::optional<double> mass_counted = {}, bulk_density_asked = {};
   BedTarget bed = {};
   Location where = {};
 
   bool has_packing_fraction() const { return packing_fraction || predicted; }
+  bool has_count() const { return count || mass; }
   /// Whether it is left to the stages how many spheres there are.
-  bool is_open() const { return !count && !has_packing_fraction(); }
+  bool is_open() const { return !has_count() && !has_packing_fraction(); }
 };
 
 /// Spheres that have places before the first stage acts, and come first in the sequence. Their sizes are
@@ -117,7 +125,8 @@ struct Output {
   std::string format;
   std::filesystem::path file = {};  ///< its name in the folder of the result; else the format's own
   std::optional<Unit> unit = {};    ///< of its lengths; else what the program expects
-  double density = 2500;            ///< of the spheres, in kg/m³
+  /// Of the spheres, in kg/m³; without it the scene's `material_density`, else that of glass, 2500.
+  std::optional<double> material_density = {};
   /// So many classes of radii, of equal width; else one for every radius, where few occur, or one for all.
   std::optional<int> types = {};
   /// Of an image, one at most: the edge of a voxel in the scene's unit, or how many there are along the
@@ -152,6 +161,7 @@ struct Scene {
   /// of the volume; else random.
   std::optional<Draw> draw = {};
   Target target;
+  std::optional<double> material_density = {};  ///< of the spheres, in kg/m³
   Start start = {};
   std::optional<SceneEngine> engine = {};
   double gap = 0;       ///< least distance between the surfaces of two spheres, or of one and its own image

@@ -22,6 +22,9 @@ struct ReferenceKey {
   bool is_diameter = false;  ///< a size that is a diameter by its name
   /// Of stages, where it acts: "everywhere", "in_bed" (between fixed walls) or "in_box" (in periodic boxes).
   std::string acts = "everywhere";
+  /// Of what its numbers are: "none", "length", "diameter", "spread", "mass" or "density": in text they stand
+  /// with their unit.
+  std::string quantity = "none";
 };
 
 /// What a scene may say in one of its tables: of one container, size distribution, stage or output, or in a

@@ -68,6 +68,13 @@ class View:
         )
 
 
+def _gap_ratio(gap: float) -> float:
+    ratio = _toml.number(gap, "gap")
+    if not 0 <= ratio <= 1:
+        raise InputError("bad_argument", f"gap is a ratio from 0 to 1, not {ratio}")
+    return ratio
+
+
 class Packing:
     """Spheres that were packed, read or imported; N of them in D dimensions, lengths in the scene's `unit`.
 
@@ -226,13 +233,20 @@ class Packing:
         return str(self._core.hash())
 
     def coordination(self, gaps: Iterable[float] = (0.002,)) -> Array:
-        """The mean number of contacts of a sphere, including those with walls, for each of several gaps: spheres touch if
+        """The mean number of contacts of a sphere with others, for each of several gaps: spheres touch if
         the gap over the sum of their radii is below it. Gaps are from 0 to 1. Cost: that of the largest gap."""
-        asked = [_toml.number(gap, "gap") for gap in gaps]
-        for gap in asked:
-            if not 0 <= gap <= 1:
-                raise InputError("bad_argument", f"gap is a ratio from 0 to 1, not {gap}")
-        return np.array(self._core.coordination(asked))
+        return np.array(self._core.coordination([_gap_ratio(gap) for gap in gaps]))
+
+    def contacts(self, gap: float = 0.002) -> Record:
+        """All contacts, one by one, sorted by i, then by j: arrays i and j of shape (M,), the indices of the spheres,
+        with j = -1 at a wall; gap, the distance of the surfaces in the scene's unit, negative where they overlap;
+        normal of shape (M, D), unit vectors from i to j or to the wall; place of shape (M, D), the middle of the gap.
+        A pair stands there once, with i < j. Where spheres touch across a period, normal and place are those of the
+        image that sphere i touches.
+
+        gap : spheres touch if the gap over the sum of their radii is below it, at a wall over the radius.
+        """
+        return Record(self._core.contacts(_gap_ratio(gap)))
 
     @property
     def history(self) -> list[Record]:

@@ -28,7 +28,7 @@ class Scene:
     ----------
     container : Container
         `Mesh("part.stl", unit="mm")`, `Cylinder(5, 20)`, `Box([4, 5, 6])`, `Periodic(edge=10)`, …
-    diameters, radii : length or Sizes
+    diameters, radii : length, which may be text with its unit, or Sizes
         exactly one of them, so that nobody has to guess: `diameters=2` or `diameters=Lognormal(2, 0.3)`.
     engine : Engine
         another program that places the spheres before the first stage, such as `Lammps(ranks=4)`.
@@ -42,8 +42,8 @@ class Scene:
         self,
         container: Container,
         *,
-        diameters: float | Sizes | None = None,
-        radii: float | Sizes | None = None,
+        diameters: float | str | Sizes | None = None,
+        radii: float | str | Sizes | None = None,
         engine: Engine | None = None,
         stages: Stage | Iterable[Stage] = (),
         outputs: Output | str | Iterable[Output | str] = (),

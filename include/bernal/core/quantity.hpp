@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bernal/core/unit.hpp"
+
+namespace bernal {
+
+/// What a number may be a number of, where people write its unit.
+enum class Quantity {
+  none,
+  length,    ///< "25.4 mm": the units of `Unit`, and µm
+  diameter,  ///< of a grain: a length, or "1.5 phi", which is 2^-1.5 mm (Krumbein 1934)
+  spread,    ///< of the logarithm of a size: "0.6 phi" is 0.6 ln 2
+  mass,      ///< "2 kg": mg, g, kg, t, lb
+  density,   ///< "1550 kg/m3", "2.5 g/cm3"
+};
+
+/// A number with its unit: a length in `unit`, a mass in kg, a density in kg/m³, a spread as it is. Decimal
+/// digits are converted exactly and rounded once, so that "25.4 mm" is 1 in; of phi the power of two is
+/// rounded first. Where `text` is no such number there is none, and `complaint` says why, with the remedy:
+/// a number without a unit, an unknown unit, a decimal comma.
+std::optional<double> number_with_unit(std::string_view text, Quantity, Unit unit, std::string& complaint);
+
+/// "25,4 mm" with a point in the place of the comma; nothing where there is no decimal comma.
+std::optional<std::string> without_decimal_comma(std::string_view text);
+
+}  // namespace bernal

@@ -1,0 +1,259 @@
+// Amounts as people have them: lengths with their unit, a mass, a bulk density, a porosity.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/error.hpp"
+#include "bernal/report/describe.hpp"
+#include "bernal/report/json.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "support/scene_texts.hpp"
+
+namespace bernal {
+namespace amounts_test {
+
+const std::string vessel = "unit = \"mm\"\n[container]\nkind = \"cylinder\"\nradius = 20\nheight = 60\n";
+const std::string box = "unit = \"mm\"\n[container]\nkind = \"periodic\"\nedge = 20\n";
+
+Scene scene_of(const std::string& container, const std::string& spheres) {
+  return parse_scene(container + "[spheres]\n" + spheres + "\n", "test.toml");
+}
+
+void expect_refused(const std::string& text, int line, std::string_view what) {
+  try {
+    build(parse_scene(text, "test.toml"));
+    ADD_FAILURE() << text;
+  } catch (const Error& error) {
+    EXPECT_NE(std::string_view(error.what()).find(what), std::string_view::npos) << error.what();
+    EXPECT_EQ(error.location().line, line) << error.what();
+  }
+}
+
+TEST(Lengths, MayCarryTheirUnit) {
+  const Scene said = parse_scene(R"(unit = "mm"
+[container]
+kind = "box"
+size = ["10 cm", 0.1, "1 in"]
+corner = ["-5 cm", 0, "0.5 um"]
+[spheres]
+count = 3
+gap = "10 um"
+wall_gap = "0.001 cm"
+diameter = { distribution = "classes", values = ["0.1 cm", 2], shares = [1, 1] }
+)",
+                                 "said.toml");
+  const Box& box = std::get<Box>(said.container);
+  EXPECT_EQ(box.size, Vector<dynamic>(Vector<3>(100, 0.1, 25.4)));
+  EXPECT_EQ(box.corner, Vector<dynamic>(Vector<3>(-50, 0, 0.0005)));
+  EXPECT_EQ(said.gap, 0.01);
+  EXPECT_EQ(said.wall_gap, 0.01);
+  EXPECT_EQ(std::get<Classes>(said.sizes).values, (std::vector<double>{1, 2}));
+  testing::expect_equal(said, parse_scene(scene_as_toml(said), "again.toml"));
+
+  const Scene mesh = parse_scene(
+      "unit = \"cm\"\n[container]\nkind = \"mesh\"\nfile = \"a.stl\"\ncap = [\"z = 25 mm\", \"x < 1\"]\n"
+      "fill_level = \"1 in\"\n[spheres]\nradius = 1\n",
+      "mesh.toml");
+  EXPECT_EQ(std::get<MeshFile>(mesh.container).cap, (std::vector<std::string>{"z = 2.5", "x < 1"}));
+  EXPECT_EQ(std::get<MeshFile>(mesh.container).fill_level, 2.54);
+
+  const Scene polygon = parse_scene(
+      "unit = \"mm\"\n[container]\nkind = \"polygon\"\nvertices = [[0, 0], [\"1 cm\", 0], [0, \"1 cm\"]]\n"
+      "[spheres]\ncount = 3\nradius = \"100 um\"\n",
+      "polygon.toml");
+  EXPECT_EQ(std::get<Polygon>(polygon.container).loops[0][1], Vector<2>(10, 0));
+  EXPECT_EQ(std::get<Constant>(polygon.sizes).value, 0.1);
+}
+
+TEST(Lengths, OfGrainsMayBeOfThePhiScale) {
+  const Scene sand =
+      scene_of(vessel,
+               "count = 9\ndiameter = { distribution = \"lognormal\", median = \"1.5 phi\", sigma = "
+               "\"0.6 phi\" }");
+  EXPECT_EQ(std::get<Lognormal>(sand.sizes).median, std::exp2(-1.5));
+  EXPECT_EQ(std::get<Lognormal>(sand.sizes).sigma, 0.6 * std::log(2.0));
+  const Scene one = scene_of(vessel, "count = 9\ndiameter = \"-1 phi\"");
+  EXPECT_EQ(std::get<Constant>(one.sizes).value, 2);
+  expect_refused(vessel + "[spheres]\ncount = 9\nradius = \"1 phi\"\n", 8, "diameter = …");
+  expect_refused(vessel + "[spheres]\ncount = 9\ngap = \"1 phi\"\ndiameter = 1\n", 8, "diameters of grains");
+  expect_refused(
+      vessel +
+          "[spheres]\ncount = 9\ndiameter = { distribution = \"normal\", mean = \"1 phi\", sd = \"1 "
+          "phi\" }\n",
+      8, "\"sd\"");
+}
+
+TEST(Lengths, AreRefusedInOneLineWithTheRemedy) {
+  const std::string spheres = vessel + "[spheres]\ncount = 9\n";
+  expect_refused(
+      spheres + "diameter = \"25,4 mm\"\n", 8,
+      "\"diameter\" in [spheres] must be a positive length or a table { distribution = … }, not \"25,4 "
+      "mm\": it has a decimal comma; write a point, \"25.4 mm\"");
+  expect_refused(spheres + "diameter = 25,4\n", 8, "a decimal comma? write a point, 25.4");
+  expect_refused(spheres + "diameter = { distribution = \"uniform\", min = 1,5, max = 2 }\n", 8,
+                 "a point, 1.5");
+  expect_refused(spheres + "diameter = 25.4 mm\n", 8, "stands in quotes, \"25.4 mm\"");
+  expect_refused(spheres + "mass = 2 kg\ndiameter = 1\n", 8, "stands in quotes, \"2 kg\"");
+  expect_refused(spheres + "diameter = \"2\"\n", 8, "names no unit; write \"2 mm\", or 2 without quotes");
+  expect_refused(spheres + "diameter = \"-2 mm\"\n", 8, "positive length");
+  expect_refused(
+      "unit = \"mm\"\n[container]\nkind = \"box\"\nsize = [1, \"2 kg\", 3]\n[spheres]\nradius = 1\n", 4,
+      "\"kg\" is unknown");
+  expect_refused(
+      "unit = \"mm\"\n[container]\nkind = \"cylinder\"\nradius = 1\nheight = 2\naxis = [\"1 mm\", 0, 0]\n"
+      "[spheres]\nradius = 1\n",
+      6, "direction");
+}
+
+double mass_of_spheres(const Packing& packing) {
+  double volume = 0;
+  for (const double r : packing.spheres.r) volume += ball_volume(3, r);
+  return volume * 1e-9 * *packing.scene.material_density;
+}
+
+TEST(Mass, OfEqualSpheresIsACountWithItsSum) {
+  const Plan plan =
+      build(scene_of(vessel, "mass = \"50 g\"\nmaterial_density = 2500\ndiameter = 3\nbed = \"poured\""));
+  // 0.05 / 2500 m³ over π/6 (3 mm)³
+  EXPECT_EQ(plan.scene.target.count, 1415);
+  EXPECT_NE(describe(plan).find("0.05 kg of 2500 kg/m3 in spheres of 3 mm: 1,415 spheres"), std::string::npos)
+      << describe(plan);
+  // What was run says the count, and packs the same.
+  const Scene again = parse_scene(scene_as_toml(plan.scene), "again.toml");
+  EXPECT_EQ(again.target.count, 1415);
+  EXPECT_FALSE(again.target.mass);
+  EXPECT_EQ(again.material_density, 2500);
+}
+
+/// Within half of the last sphere, however sizes are drawn, whatever the seed, with gaps and with a tail that
+/// is cut off.
+TEST(Mass, IsMetWithinOneSphere) {
+  const std::string wide = "diameter = { distribution = \"lognormal\", median = 2, sigma = 0.6 }\n";
+  for (const std::string spheres :
+       {wide, wide + "draw = \"random\"\n", wide + "gap = 0.05\n",
+        std::string("diameter = { distribution = \"classes\", values = [1, 4], shares = [20, 1] }\n")})
+    for (const char* seed : {"1", "2", "77"}) {
+      const Plan plan =
+          build(parse_scene(std::string("seed = ") + seed + "\n" + vessel + "[spheres]\nmass = \"20 g\"\n" +
+                                "material_density = 2500\n" + spheres + "[[stage]]\ndo = \"insert\"\n",
+                            "test.toml"));
+      const Packing packing = run(plan);
+      EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+      const double largest = std::ranges::max(packing.spheres.r);
+      EXPECT_NEAR(mass_of_spheres(packing), 0.02, ball_volume(3, largest) * 1e-9 * 2500) << spheres;
+      EXPECT_NEAR(*mass_of(packing, packing.packing_fraction()), mass_of_spheres(packing), 1e-12);
+    }
+}
+
+TEST(Mass, GivesTheSizeOfAPeriodicBox) {
+  const Plan plan = build(scene_of("unit = \"mm\"\n[container]\nkind = \"periodic\"\n",
+                                   "mass = \"1 g\"\nmaterial_density = \"2.5 g/cm3\"\ndiameter = 2\n"));
+  EXPECT_EQ(plan.scene.target.count, 95);
+  EXPECT_TRUE(plan.box_follows);
+}
+
+TEST(Mass, IsRefusedWhereItMeansNothing) {
+  const std::string spheres = vessel + "[spheres]\n";
+  expect_refused(spheres + "mass = 1\ndiameter = 1\n", 7, "needs the \"material_density\"");
+  expect_refused(spheres + "mass = 1\nmaterial_density = 2500\ncount = 3\ndiameter = 1\n", 7,
+                 "exclude each other");
+  expect_refused(spheres + "mass = 0\nmaterial_density = 2500\ndiameter = 1\n", 7, "above 0");
+  expect_refused(spheres + "mass = \"1 m\"\nmaterial_density = 2500\ndiameter = 1\n", 7, "use one of mg");
+  expect_refused(spheres + "mass = \"0.1 mg\"\nmaterial_density = 2500\ndiameter = 1\n", 7,
+                 "check the units");
+  expect_refused(spheres + "mass = 1e9\nmaterial_density = 2500\ndiameter = 1e-3\n", 7, "2^31");
+  expect_refused(
+      "[container]\nkind = \"box\"\nsize = [9, 9]\n[spheres]\nmass = 1\nmaterial_density = 2500\n"
+      "diameter = 1\n",
+      5, "three dimensions");
+}
+
+TEST(BulkDensity, IsThePorosityOfABedAndElseAPackingFraction) {
+  const std::string asked = "bulk_density = 1550\nmaterial_density = 2500\ndiameter = 3\n";
+  const Plan bed = build(scene_of(vessel, asked));
+  EXPECT_EQ(bed.scene.target.bed.porosity, 0.38);
+  EXPECT_EQ(bed.scene.stages.front().name(), "settle");
+  EXPECT_NE(explain(bed).find("1550 kg/m3 of spheres of 2500 kg/m3: porosity 0.38"), std::string::npos)
+      << explain(bed);
+  const Plan loose = build(scene_of(box, asked));
+  EXPECT_EQ(loose.scene.target.packing_fraction, 0.62);
+  EXPECT_NE(explain(loose).find(": packing fraction 0.62"), std::string::npos);
+  const Plan by_stage =
+      build(scene_of(vessel, asked + "[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"relax\""));
+  EXPECT_EQ(by_stage.scene.target.packing_fraction, 0.62);
+  const std::string spheres = vessel + "[spheres]\n";
+  expect_refused(spheres + "bulk_density = 1550\ndiameter = 3\n", 7, "needs the \"material_density\"");
+  expect_refused(spheres + "bulk_density = 2550\nmaterial_density = 2500\ndiameter = 3\n", 7,
+                 "of the material?");
+  expect_refused(spheres + "bulk_density = 1550\nmaterial_density = 2500\nporosity = 0.4\ndiameter = 3\n", 7,
+                 "exclude each other");
+}
+
+TEST(Porosity, WithoutABedIsAPackingFraction) {
+  EXPECT_EQ(scene_of(box, "porosity = 0.42\ndiameter = 3").target.packing_fraction, 0.58);
+  EXPECT_EQ(scene_of(vessel, "porosity = 0.42\ndiameter = 3").target.bed.porosity, 0.42);
+  const Scene counted =
+      scene_of("[container]\nkind = \"periodic\"\n", "porosity = 0.42\ncount = 100\ndiameter = 3");
+  EXPECT_EQ(counted.target.packing_fraction, 0.58);
+  testing::expect_equal(counted, parse_scene(scene_as_toml(counted), "again.toml"));
+  expect_refused(box + "[spheres]\nporosity = 0.42\npacking_fraction = 0.5\ndiameter = 3\n", 7,
+                 "say the same");
+  expect_refused(box + "[spheres]\nporosity = 0.42\nbed = \"poured\"\ndiameter = 3\n", 6,
+                 "exclude each other");
+}
+
+TEST(MaterialDensity, IsTheDefaultOfOutputs) {
+  const auto density = [](const std::string& spheres, const std::string& output) {
+    return *scene_of(vessel,
+                     "count = 9\ndiameter = 1\n" + spheres + "\n[[output]]\nformat = \"lammps\"\n" + output)
+                .outputs.at(0)
+                .material_density;
+  };
+  EXPECT_EQ(density("", ""), 2500);
+  EXPECT_EQ(density("material_density = 7850", ""), 7850);
+  EXPECT_EQ(density("material_density = 7850", "material_density = \"1 g/cm3\""), 1000);
+  EXPECT_EQ(density("material_density = 7850", "density = 1200"), 1200);
+  expect_refused(vessel +
+                     "[spheres]\ncount = 9\ndiameter = 1\n[[output]]\nformat = \"lammps\"\ndensity = 1\n"
+                     "material_density = 1\n",
+                 11, "older name");
+}
+
+TEST(Hints, SayHowASceneIsUnderstood) {
+  const auto hints = [](const std::string& text) { return explain(build(parse_scene(text, "test.toml"))); };
+  const auto has = [](const std::string& text, std::string_view what) {
+    return text.find(what) != std::string::npos;
+  };
+  const std::string jar =
+      "[container]\nkind = \"cylinder\"\nradius = 20\nheight = 60\n[spheres]\ndiameter = 3\n";
+  EXPECT_TRUE(has(hints(jar), "no unit is said, and every length is taken to be in m"));
+  EXPECT_FALSE(has(hints("unit = \"mm\"\n" + jar), "no unit"));
+  EXPECT_FALSE(
+      has(hints("[container]\nkind = \"periodic\"\n[spheres]\ncount = 50\nradius = 1\n"), "no unit"));
+
+  const std::string floats = "will float in the container, dispersed";
+  EXPECT_TRUE(has(hints(jar + "count = 500\n"), "500 spheres " + floats));
+  EXPECT_TRUE(has(hints(jar + "count = 500\n"), "bed = \"poured\""));
+  EXPECT_FALSE(has(hints(jar + "count = 500\nbed = \"poured\"\n"), floats));
+  EXPECT_FALSE(has(hints(jar + "count = 3000\n"), floats));  // to the brim
+  EXPECT_FALSE(has(hints(jar), floats));
+  EXPECT_FALSE(has(hints(jar + "count = 500\n[[stage]]\ndo = \"insert\"\n"), floats));
+
+  const auto two = [&](const std::string& rest) {
+    return hints(
+        "unit = \"mm\"\n[container]\nkind = \"periodic\"\n[spheres]\ncount = 9000\ndiameter = { distribution "
+        "= \"classes\", values = [1, 2], shares = [30, 70]" +
+        rest + " }\n");
+  };
+  EXPECT_TRUE(has(two(""), "shares 0.3 : 0.7 count spheres; by mass they are 0.0508 : 0.949")) << two("");
+  EXPECT_FALSE(has(two(", basis = \"number\""), "count spheres"));
+  EXPECT_FALSE(has(two(", basis = \"volume\""), "count spheres"));
+}
+
+}  // namespace amounts_test
+}  // namespace bernal
