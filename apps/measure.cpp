@@ -68,8 +68,8 @@ void print_neighbours(const ContactSums& sums, std::size_t spheres) {
   std::vector<std::string> shares;
   for (std::size_t k = 0; k < by_contacts.size(); ++k)
     if (by_contacts[k] > 0)
-      shares.push_back(fmt::format(
-          "{}: {:.3g} %", k, 100 * static_cast<double>(by_contacts[k]) / static_cast<double>(spheres)));
+      shares.push_back(fmt::format("{}: {:.3g} %", k,
+                                   100 * static_cast<double>(by_contacts[k]) / static_cast<double>(spheres)));
   constexpr std::size_t in_a_line = 8;
   for (std::size_t k = 0; k < shares.size(); k += in_a_line)
     fmt::print("{:<18}{}\n", k == 0 ? "of a sphere" : "",
@@ -93,9 +93,9 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
     fmt::print("rattlers          {} ({:.2f} %), held by fewer than {} contacts\n", grouped(c.rattlers),
                100.0 * static_cast<double>(c.rattlers) / static_cast<double>(packing.spheres.size()),
                packing.spheres.dimension() + 1);
-    fmt::print("backbone          {} spheres, {} contacts, coordination {:.4f}{}\n", grouped(c.backbone),
-               grouped(c.backbone_pairs), c.backbone_coordination,
-               walls ? fmt::format("; {} with the wall", grouped(c.backbone_walls)) : "");
+    say(stdout, "backbone          {} spheres, {} contacts, coordination {:.4f}{}\n", grouped(c.backbone),
+        grouped(c.backbone_pairs), c.backbone_coordination,
+        walls ? fmt::format("; {} with the wall", grouped(c.backbone_walls)) : "");
     const double ratio = static_cast<double>(c.backbone_contacts()) / static_cast<double>(*c.isostatic);
     fmt::print("isostatic         {} contacts would just hold the backbone; there are {:.3g} % {}\n",
                grouped(*c.isostatic), 100 * std::abs(ratio - 1), ratio < 1 ? "fewer" : "more");
@@ -123,7 +123,7 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
 void print_radial(const Packing& packing, const std::optional<RadialDistribution>& radial,
                   const std::optional<BedProfile>& bed) {
   if (!radial) {
-    fmt::print("\ng(r)              only of two spheres or more, and between walls in three dimensions\n");
+    say(stdout, "\ng(r)              only of two spheres or more, and between walls in three dimensions\n");
     return;
   }
   fmt::print("\ng(r), the radial distribution function; mean diameter {:.6g} {}, bins of {:.3g} {}\n",
@@ -131,8 +131,9 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
              name_of(packing.scene.unit));
   const double reach = radial->bin_width * static_cast<double>(radial->g.size()) / radial->mean_diameter;
   if (!radial->share.empty())
-    fmt::print("between walls: by the share of each shell where centres may be{}; standard error up to {:.2g}\n",
-               part_of_bed(packing, bed), *std::ranges::max_element(radial->error));
+    fmt::print(
+        "between walls: by the share of each shell where centres may be{}; standard error up to {:.2g}\n",
+        part_of_bed(packing, bed), *std::ranges::max_element(radial->error));
   print_chart(radial->g, 3, 3, fmt::format("{:.3g} diameters", reach));
   for (const auto& peak : radial->peaks)
     fmt::print("peak              {:.2f} at {:.3f} diameters (± {:.2f}, ± {:.3f})\n", peak.g,
@@ -140,7 +141,7 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
 }
 
 void print_size_correlation(const SizeCorrelation& correlation) {
-  fmt::print("\nsize correlation  of two spheres, 0 where their sizes know nothing of each other\n");
+  say(stdout, "\nsize correlation  of two spheres, 0 where their sizes know nothing of each other\n");
   if (correlation.neighbours)
     fmt::print("  neighbours      {:.4f} ± {:.4f}, nearer than {:g} times the sum of their radii\n",
                correlation.neighbours->correlation, correlation.neighbours->error, 1 + BondOrder::widest_gap);
@@ -226,8 +227,8 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
   fmt::print("by {:<14} {} as diameters; asked {}\n", packing.spheres.dimension() == 2 ? "area" : "volume",
              fmt::join(there, ", "), fmt::join(asked, ", "));
   if (!sizes.classes.empty() && sizes.shares.size() == sizes.classes.size()) {  // few
-    fmt::print("\n{:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres",
-               "by number", "asked", packing.spheres.dimension() == 2 ? "by area" : "by volume", "asked");
+    say(stdout, "\n{:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres",
+        "by number", "asked", packing.spheres.dimension() == 2 ? "by area" : "by volume", "asked");
     for (const SizeComparison::Share& c : sizes.shares)
       fmt::print("{:>12.6g} {:>12} {:>12.5f} {:>12.5f} {:>12.5f} {:>12.5f}\n", factor * c.up_to,
                  grouped(c.count), c.number, c.asked_number, c.volume, c.asked_volume);
@@ -243,9 +244,10 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
 constexpr std::size_t most_cells = 20'000'000;
 
 void print(const Packing& packing, const Measurements& measured) {
-  fmt::print("spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
-             name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
-             name_of(packing.scene.unit));
+  speak_of(packing.spheres.dimension());
+  say(stdout, "spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
+      name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
+      name_of(packing.scene.unit));
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);
@@ -257,7 +259,7 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.order && !packing.spheres.empty()) print_order(*measured.order);
   if (measured.local) print_local(packing, *measured.local);
   if (!measured.local && packing.spheres.size() > most_cells)
-    fmt::print("\nlocal packing     not of so many spheres, unless --local FILE asks for it\n");
+    say(stdout, "\nlocal packing     not of so many spheres, unless --local FILE asks for it\n");
   if (measured.pores) print_pores(packing, *measured.pores, part_of_bed(packing, measured.bed));
   if (measured.structure) print_structure(*measured.structure);
   if (measured.sizes) print_sizes(packing, *measured.sizes);
@@ -303,8 +305,7 @@ int measure_folder(const MeasureCall& call) try {
     write_local(packing, *measured.local, call.local);
   }
   if (!call.contacts.empty())
-    write_contacts(packing,
-                   contact_list(packing.spheres, packing.domain, contact_options_of(packing, call)),
+    write_contacts(packing, contact_list(packing.spheres, packing.domain, contact_options_of(packing, call)),
                    call.contacts);
   if (call.json)
     fmt::print("{}", measurements_as_json(packing, measured));

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "bernal/plan/plan.hpp"
 #include "plan/start.hpp"
 #include "scene/size_kinds.hpp"
+#include "sizes/scaled.hpp"
 
 namespace bernal {
 namespace {
@@ -91,7 +93,8 @@ Radii radii_of(const Scene& scene) {
     return radii_there(read_start(copy).spheres.r);
   }
   try {
-    return std::visit(MakeRadii{scene.sizes_are_diameters ? 0.5 : 1.0}, scene.sizes);
+    Radii radii = std::visit(MakeRadii{scene.sizes_are_diameters ? 0.5 : 1.0}, scene.sizes);
+    return scene.scale == 1 ? std::move(radii) : std::make_unique<Scaled>(std::move(radii), scene.scale);
   } catch (const Error& error) {  // what only the numbers together show
     if (error.code() != ErrorCode::bad_argument) throw;
     throw Error(ErrorCode::bad_scene, error.what(), scene.sizes.locations.whole);

@@ -12,7 +12,7 @@
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"
-#include "scene/complete_list.hpp"
+#include "scene/complete_sizes.hpp"
 #include "scene/given_files.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/stage_table.hpp"

@@ -159,8 +159,7 @@ JobPointer inspect_job(const Scene& scene, std::optional<double> radius, const s
     monitor.report({"diagnose", -1, {}});
     const ImportedMesh imported = read_mesh(file);
     const bool usable = imported.report.usable();
-    std::vector<std::string> lines;
-    if (!usable) lines = lines_that_help(file, {}, imported, Effort::thorough);
+    const std::vector<std::string> lines = lines_that_help(file, {}, imported, Effort::thorough);
     if (places) write_places(imported, *places);
     std::optional<Chambers> chambers;
     if (radius && usable) chambers = chambers_for(imported.mesh, *radius);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/core/text.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "report/size_summary.hpp"
@@ -104,7 +105,7 @@ std::string explain(const Plan& plan) {
   if (scene.stages_are_default)
     text += fmt::format("\nThe scene names no stages. This protocol runs; paste it to change it:\n\n{}",
                         stages_as_toml(scene));
-  return text;
+  return in_dimension(scene.dimension(), text);
 }
 
 }  // namespace bernal

@@ -109,12 +109,14 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "flag")
     return key.min > 0 ? SceneSchema{{"const", true}} : SceneSchema{{"type", "boolean"}};
   if (key.type == "word") return one_of_words(key);
-  if (key.type == "distribution") return refers_to(key.name);
+  if (key.type == "distribution" && key.words.empty()) return refers_to(key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
   const bool from_zero = key.type == "lengths" && key.min == 0;
   SceneSchema value = key.type == "number" || key.type == "integer"
                           ? within_range(key)
-                          : refers_to(from_zero ? "lengths_from_zero" : key.type);
+                          : refers_to(from_zero                    ? "lengths_from_zero"
+                                      : key.type == "distribution" ? key.name
+                                                                   : key.type);
   if (const auto text = measured_text(key.quantity); text && key.type == "number")
     value = either(std::move(value), *text);
   if (key.words.empty()) return value;

@@ -144,6 +144,8 @@ std::string expectation(const Key& key, const std::optional<Value>& given) {
                               : fmt::format("a whole number from {:.0f} to {:.0f}", range.min, range.max);
   if (key.type == Type::names && !key.words.empty()) return fmt::format("an array of {}", words);
   if (key.type == Type::position && !key.words.empty()) return fmt::format("a point [x, y, z] or {}", words);
+  if (key.type == Type::distribution && !key.words.empty())
+    return fmt::format("{} or {}", rules.at(key.type).kind, words);
   const Rule& rule = rule_of(key);
   if (given && has_endless_point(*given)) return fmt::format("{}, whose coordinates are finite", rule.kind);
   return given && rule.has_length && is_absurd(*given)

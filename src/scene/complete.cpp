@@ -7,7 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "scene/complete_list.hpp"
+#include "scene/complete_sizes.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
@@ -331,6 +331,7 @@ bool StageTraits::works_in(const Scene& scene) const {
 }
 
 void complete(Scene& scene) {
+  complete_density(scene);
   for (const Entry* entry : schema::own_entries())
     check(*entry, &scene,
           {entry->name == "scene" ? "the scene" : fmt::format("[{}]", entry->name), scene.locations});

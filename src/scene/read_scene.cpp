@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -316,6 +317,12 @@ class Reader {
       const std::size_t n = choose(*table, "distribution", names_of(entries), named);
       schema::hold(sizes, n);
       read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
+      return sizes;
+    }
+    if (const auto* word = node.as_string();
+        word && std::ranges::find(key.words, word->get()) != key.words.end()) {
+      sizes = Constant{std::numeric_limits<double>::infinity()};  // as its member takes it
+      sizes.locations.whole = at(node.source());
       return sizes;
     }
     const Key length = {.name = key.name, .type = Type::length};

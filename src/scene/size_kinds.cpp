@@ -51,4 +51,17 @@ std::vector<double> shares_of_one_density(const Classes& of) {
   return shares;
 }
 
+std::optional<double> mean_density(const Classes& of) {
+  const std::vector<double> shares = shares_of_one_density(of);
+  const std::size_t n = of.material_densities.size();
+  if (n == 0 || of.values.size() != n || shares.size() != n) return {};
+  double volume = 0, mass = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double cube = of.basis == Basis::number ? std::pow(of.values[i] / of.values[0], 3) : 1;
+    volume += shares[i] * cube;
+    mass += shares[i] * cube * of.material_densities[i];
+  }
+  return volume > 0 && mass > 0 ? std::optional(mass / volume) : std::nullopt;
+}
+
 }  // namespace bernal

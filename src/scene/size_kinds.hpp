@@ -43,4 +43,7 @@ std::optional<std::size_t> class_of(const Classes&, double size);
 /// Shares by volume, or by number: those by mass are divided by the densities of the materials.
 std::vector<double> shares_of_one_density(const Classes&);
 
+/// Of classes with a density each: of all of them together, in kg/m³; none where they have none.
+std::optional<double> mean_density(const Classes&);
+
 }  // namespace bernal

@@ -263,7 +263,7 @@ Certificate certificate_of(const Source& spheres, const Domain& domain, const Ce
     result.overlaps = std::move(tally.overlaps).sorted();
     result.protrusions = std::move(tally.protrusions).sorted();
     result.certified = !result.cancelled && tally.overlapping == 0 && tally.protruding == 0;
-    result.statement = statement_of(result, domain);
+    result.statement = in_dimension(dimension_of_spheres(spheres), statement_of(result, domain));
   }
   result.seconds = watch.seconds();
   return result;

@@ -7,9 +7,10 @@ import json
 import pickle
 import subprocess
 import unittest
+import warnings
 
 import numpy as np
-from support import COMMAND, HELIX, InFolder, small
+from support import COMMAND, DATA, HELIX, InFolder, small
 
 import bernal
 
@@ -108,10 +109,43 @@ class Runs(InFolder):
         self.assertIn("height:300px", view._repr_html_())
         self.refuses(bernal.InputError, "plane", lambda: packing.section("nowhere"))
 
-    def test_no_place_left_is_an_outcome(self):
-        packing = bernal.pack(bernal.Scene(bernal.Box([4, 4, 4]), diameters=1, count=500, stages=bernal.Insert()))
+    def test_no_place_left_is_an_outcome_that_is_seen(self):
+        scene = bernal.Scene(bernal.Box([4, 4, 4]), diameters=1, count=500, stages=bernal.Insert())
+        with self.assertWarns(bernal.NotReached) as warned:
+            packing = bernal.pack(scene)
         self.assertEqual(packing.outcome, "full")
         self.assertTrue(bernal.verify(packing))
+        self.assertIn(packing.reason, str(warned.warning))
+        self.assertIn(f"full: {packing.reason}", repr(packing))
+        self.assertIn("color:#b87400", packing._repr_html_())
+        self.assertTrue(issubclass(bernal.Stopped, bernal.NotReached))
+
+    def test_a_perfect_end_warns_of_nothing(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            packing = bernal.pack(small())
+        self.assertTrue(repr(packing).endswith(", converged>"))
+        self.assertNotIn("#b87400", packing._repr_html_())
+
+    def test_discs_are_called_so(self):
+        packing = bernal.pack(bernal.Scene(bernal.Box([20, 20]), diameters=1, count=50, stages=bernal.Insert()))
+        self.assertIn("50 discs", repr(packing))
+        self.assertIn(">discs<", packing._repr_html_())
+
+    def test_a_mesh_is_packed_without_a_scene(self):
+        hopper = DATA / "meshes" / "hopper.stl"
+        packing = bernal.pack(hopper, unit="m", diameters=bernal.Lognormal(0.12, 0.1), count=50)
+        self.assertEqual((len(packing), packing.unit), (50, "m"))
+        self.assertTrue(bernal.verify(packing))
+        again = bernal.pack(bernal.Scene(bernal.Mesh(hopper), unit="m", diameters=bernal.Lognormal(0.12, 0.1), count=50))
+        self.assertEqual(again.hash, packing.hash)
+        plan = bernal.explain(str(hopper), file_unit="m", unit="mm", radius=60, fill=True)
+        self.assertEqual(plan.unit, "mm")
+        self.assertAlmostEqual(bernal.explain(hopper, unit="m", diameter=0.12).expected.count, plan.expected.count, 3)
+        self.refuses(bernal.InputError, "is a mesh, not a scene", lambda: bernal.explain(hopper))
+        self.refuses(bernal.InputError, "does not say its unit", lambda: bernal.pack(hopper, diameters=1))
+        self.refuses(bernal.InputError, 'no "cout"; did you mean "count"', lambda: bernal.pack(hopper, unit="m", radii=1, cout=3))
+        self.refuses(bernal.KeywordError, "leave out count", lambda: bernal.pack(small(), count=3))
 
     def test_files_hold_the_packing(self):
         packing = bernal.pack(small(outputs=["yade"]))

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <random>
 
 #include <fmt/format.h>
@@ -174,6 +175,22 @@ TEST(Classes, ByMassAreDividedByTheirDensities) {
   EXPECT_NEAR(sizes->cumulative(2), steel / (steel + glass), 1e-15);
   const auto of_one = diameters_of("\"classes\", values = [2, 3], shares = [30, 70], basis = \"mass\"");
   expect_same(*of_one, *diameters_of("\"classes\", values = [2, 3], shares = [30, 70], basis = \"volume\""));
+}
+
+// By number 30 g / (7.85 · 2³) and 70 g / (2.5 · 3³) of each 100 g; 1 kg of them has ten times as many.
+TEST(Classes, OfSeveralMaterialsAreCountedByTheirMass) {
+  const std::string sizes =
+      "diameter = { distribution = \"classes\", values = [2, 3], shares = [30, 70], basis = \"mass\", "
+      "material_densities = [7850, 2500] }\n";
+  const auto count_of = [&](const std::string& more) {
+    return build(parse_scene("unit = \"mm\"\n[container]\nkind = \"periodic\"\n[spheres]\nmass = \"1 kg\"\n" + more + sizes,
+                             "s.toml"));
+  };
+  const double per_gram = 6 / std::numbers::pi * 1000 * (0.3 / 7.85 / 8 + 0.7 / 2.5 / 27);
+  EXPECT_NEAR(static_cast<double>(*count_of("").scene.target.count), 1000 * per_gram, 2);
+  EXPECT_NEAR(*count_of("").scene.material_density, 100 / (30 / 7850.0 + 70 / 2500.0), 1e-9);
+  EXPECT_NO_THROW(parse_scene(scene_as_toml(count_of("").scene), "s.toml"));
+  EXPECT_THROW(count_of("material_density = 2500\n"), Error);
 }
 
 // Whatever stage draws them: every class has as many spheres as its share of the mass asks for, to one.

@@ -45,10 +45,15 @@ struct Failed {
 /// The only solid of a result; any other number is an error.
 TopoDS_Shape only_solid(const TopoDS_Shape& shape, const char* what) {
   TopExp_Explorer solid(shape, TopAbs_SOLID);
-  if (!solid.More()) throw Failed{fmt::format("OpenCASCADE makes nothing of {}", what)};
+  if (!solid.More())
+    throw Failed{fmt::format(
+        "OpenCASCADE makes nothing of {}; export triangles, such as STL, or treat contacts otherwise", what)};
   const TopoDS_Shape found = solid.Current();
   solid.Next();
-  if (solid.More()) throw Failed{fmt::format("OpenCASCADE makes several solids of {}", what)};
+  if (solid.More())
+    throw Failed{fmt::format(
+        "OpenCASCADE makes several solids of {}; export triangles, such as STL, or treat contacts otherwise",
+        what)};
   return found;
 }
 
@@ -140,13 +145,16 @@ struct ContainerShape {
       }
       BRepBuilderAPI_MakeFace face(wires.front(), true);
       for (std::size_t k = 1; k < wires.size(); ++k) face.Add(wires[k]);
-      if (!face.IsDone()) throw Failed{"OpenCASCADE makes no face of a flat part of the container"};
+      if (!face.IsDone())
+        throw Failed{
+            "OpenCASCADE makes no face of a flat part of the container; export triangles, such as STL"};
       sewing.Add(face.Face());
     }
     sewing.Perform();
     TopExp_Explorer shell(sewing.SewedShape(), TopAbs_SHELL);
     if (!shell.More() || sewing.NbFreeEdges() > 0)
-      throw Failed{"OpenCASCADE makes no closed surface of the container's triangles"};
+      throw Failed{
+          "OpenCASCADE makes no closed surface of the container's triangles; export triangles, such as STL"};
     BRepBuilderAPI_MakeSolid solid;
     for (; shell.More(); shell.Next()) solid.Add(TopoDS::Shell(shell.Current()));
     return solid.Solid();

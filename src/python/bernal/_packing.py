@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from . import _core, _records, _surfaces, _toml
 from ._errors import InputError
-from ._jobs import finish
+from ._jobs import NOT_REACHED, finish
 from ._progress import Progress
 from ._records import Record, Written
 from ._scene import Scene
@@ -316,18 +316,27 @@ class Packing:
     def __deepcopy__(self, memo: dict[int, Any]) -> Packing:
         return self
 
+    @property
+    def _noun(self) -> str:
+        noun = "disc" if self.dimension == 2 else "sphere"
+        return noun if len(self) == 1 else noun + "s"
+
     def __repr__(self) -> str:
-        n = len(self)
+        end = f"{self.outcome}: {self.reason}" if self.outcome in NOT_REACHED else self.outcome
         return (
-            f"<Packing of {n:,} {'sphere' if n == 1 else 'spheres'} in a {self._core.domain()}, "
-            f"packing fraction {self.packing_fraction:.4f}, {self.outcome}>"
+            f"<Packing of {len(self):,} {self._noun} in a {self._core.domain()}, "
+            f"packing fraction {self.packing_fraction:.4f}, {end}>"
         )
+
+    def _colour(self, row: str) -> str:
+        """Amber, which can be read on white and on black, for a run that ended without what was asked."""
+        return ' style="color:#b87400;font-weight:600"' if row == "outcome" and self.outcome in NOT_REACHED else ""
 
     def _repr_html_(self) -> str:
         expected = f" ({self.expected_packing_fraction:.3f} was expected)" if self.expected_packing_fraction > 0 else ""
         size = " × ".join(f"{edge:.4g}" for edge in self.bounds[1] - self.bounds[0])
         rows = {
-            "spheres": f"{len(self):,} in a {self._core.domain()} of {size} {self.unit}",
+            "discs" if self.dimension == 2 else "spheres": f"{len(self):,} in a {self._core.domain()} of {size} {self.unit}",
             "packing fraction": f"{self.packing_fraction:.4f}{expected}",
             "outcome": f"{self.outcome}: {self.reason}" if self.reason else self.outcome,
         }
@@ -336,7 +345,8 @@ class Packing:
             range_of = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
             rows["diameters"] = f"{range_of} {self.unit}"
         cells = "".join(
-            f'<div style="opacity:.65">{name}</div><div>{html.escape(text)}</div>' for name, text in rows.items()
+            f'<div style="opacity:.65">{name}</div><div{self._colour(name)}>{html.escape(text)}</div>'
+            for name, text in rows.items()
         )
         picture = self.picture._repr_html_() if self.dimension in (2, 3) else ""
         return (

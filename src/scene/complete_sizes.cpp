@@ -1,9 +1,12 @@
-#include "scene/complete_list.hpp"
+#include "scene/complete_sizes.hpp"
+
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
 #include "scene/scene_entries.hpp"
+#include "scene/size_kinds.hpp"
 
 namespace bernal {
 namespace {
@@ -23,6 +26,20 @@ void refuse_each_in_parts(const SceneSizes& sizes) {
 }
 
 }  // namespace
+
+void complete_density(Scene& scene) {
+  const auto* classes = std::get_if<Classes>(&scene.sizes);
+  const std::optional<double> mean = classes ? mean_density(*classes) : std::nullopt;
+  if (!mean) return;
+  constexpr double rounding = 1e-9;
+  if (!scene.material_density) scene.material_density = mean;
+  if (std::abs(*scene.material_density / *mean - 1) > rounding)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("the classes have densities of their own, {:.6g} kg/m3 together: leave "
+                            "\"material_density\" out of [spheres]",
+                            *mean),
+                scene.locations.of("material_density"));
+}
 
 void complete_list(Scene& scene) {
   if (!scene.draws()) return;
