@@ -57,8 +57,9 @@ Entry cone_entry() {
   return entry<Cone>(
       {.name = "cone",
        .help = "a circular cone or frustum along any axis",
-       .keys = {required(key(Type::amounts, &Cone::radii, "radii",
-                             "at the base and at the top, [r0, r1]; one of them may be 0")),
+       .keys = {required(of_quantity(Quantity::length,
+                                     key(Type::amounts, &Cone::radii, "radii",
+                                         "at the base and at the top, [r0, r1]; one of them may be 0"))),
                 required(length(&Cone::height, "height", "its length along the axis")), axis_key<Cone>(),
                 key(Type::position, &Cone::base, "base", "the middle of its base")},
        .rule = rule(cone_rule)});
