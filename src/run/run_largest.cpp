@@ -44,7 +44,7 @@ class Search {
     Packing packing = std::move(*best_);
     packing.outcome = stopped_ ? Outcome::cancelled : Outcome::converged;
     packing.reason = in_words(packing, fitting.value_or(scale), too_large);
-    packing.effects.push_back({"search for the largest", runs_, watch_.seconds()});
+    packing.effects.push_back({"search", runs_, watch_.seconds()});
     packing.seconds = watch_.seconds();
     return packing;
   }

@@ -77,12 +77,12 @@ TEST(Usage, KeysOfAGroupHasThoseOfItsTables) {
 
 TEST(Usage, KeysFindsByWords) {
   // What people say, and the first key that they are to see.
-  const std::pair<const char*, const char*> wishes[] = {{"roundness of the top", "heap_angle"},
+  const std::pair<const char*, const char*> wishes[] = {{"roundness of the top", "top"},
                                                         {"heap", "heap_angle"},
                                                         {"porosity", "porosity"},
                                                         {"cap", "cap"},
                                                         {"how many spheres", "count"},
-                                                        {"kg", "density"},
+                                                        {"kg", "material_density"},
                                                         {"watertight", "cap"},
                                                         {"reproducible", "seed"},
                                                         {"void", "porosity"}};
