@@ -67,6 +67,12 @@ class FrustumWay {
   Real speed_, lengths_;
 };
 
+/// Whether the way, as far as c + limit·direction, is known to keep that distance from the piece because it
+/// keeps it from the line of its edge, on the side of the axis, where that distance is concave along the way:
+/// its ends tell. In doubles, to some roundoffs of the lengths; most questions in a convex vessel end here.
+bool keeps_inside(const ProfileEdge& edge, const Vector<3>& c, const Vector<3>& direction, double limit,
+                  double distance);
+
 /// The rule of kernels/first_contact.hpp for a piece.
 double first_contact_with_frustum(const ProfileEdge& edge, const Vector<3>& c, double r,
                                   const Vector<3>& direction, double limit, double skin);
