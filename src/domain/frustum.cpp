@@ -91,10 +91,14 @@ Real FrustumWay::error(Real t, double r) const {
   return 64 * tiny * (lengths_ + std::abs(t) * speed_ + r);
 }
 
-Real FrustumWay::line_below(Real R, Real from, Real limit) const {
-  if (!(length_ > 0)) return never;
+Real FrustumWay::line_distance(Real t) const {
+  const Point p = at(t);
+  return std::abs((p[0] - a_[0]) * e_[1] - (p[1] - a_[1]) * e_[0]) / length_;
+}
+
+FrustumWay::Crossing FrustumWay::line_below(Real R, Real from, Real limit) const {
   const Real n0 = e_[1] / length_, n1 = -e_[0] / length_;
-  Real first = never;
+  Crossing first;
   for (const Real side : {Real(1), Real(-1)}) {
     const Real k = side * R + n0 * a_[0] + n1 * (a_[1] - z_), m = n1 * vz_;
     Real roots[2];
@@ -116,11 +120,13 @@ Real FrustumWay::line_below(Real R, Real from, Real limit) const {
       // Of the other sign of the root, or of a way that leads away.
       if (std::abs(offset(t)) > std::sqrt(tiny) * (lengths_ + R + std::abs(t) * speed_) || !(slope(t) < 0))
         continue;
-      if (!(t >= from && t <= limit) || t >= first) continue;
+      if (!(t >= from && t <= limit)) continue;
+      first.of_line = std::min(first.of_line, t);
       const Point p = at(t);
       const Real along = (p[0] - a_[0]) * e_[0] + (p[1] - a_[1]) * e_[1];
       const Real rounding = 256 * tiny * length_ * (lengths_ + t * speed_);
-      if (along >= -rounding && along <= length_ * length_ + rounding) first = t;
+      if (along >= -rounding && along <= length_ * length_ + rounding)
+        first.of_edge = std::min(first.of_edge, t);
     }
   }
   return first;
@@ -185,7 +191,16 @@ Real FrustumWay::end_below(const Point& end, Real R, Real from, Real limit) cons
 
 Real FrustumWay::first_below(Real R, Real from, Real limit) const {
   if (!(R > 0) || !(from <= limit)) return never;
-  Real first = line_below(R, from, limit);
+  Real first = never;
+  if (length_ > 0) {
+    const Crossing crossing = line_below(R, from, limit);
+    first = crossing.of_edge;
+    // Until it comes near the line it is near no end.
+    if (line_distance(from) >= R) {
+      if (crossing.of_line == never) return never;
+      from = std::max(from, crossing.of_line - 64 * tiny * (lengths_ + R) / speed_);
+    }
+  }
   first = std::min(first, end_below(a_, R, from, std::min(first, limit)));
   return std::min(first, end_below({a_[0] + e_[0], a_[1] + e_[1]}, R, from, std::min(first, limit)));
 }

@@ -56,7 +56,13 @@ class FrustumWay {
   using Point = std::array<Real, 2>;
   using LongVector = Eigen::Matrix<Real, 3, 1>;
   Point at(Real t) const;
-  Real line_below(Real R, Real from, Real limit) const;
+  /// When the way comes nearer than R to the line of the edge, and when to the edge itself with its foot
+  /// between the ends.
+  struct Crossing {
+    Real of_line = never, of_edge = never;
+  };
+  Real line_distance(Real t) const;
+  Crossing line_below(Real R, Real from, Real limit) const;
   Real end_below(const Point& end, Real R, Real from, Real limit) const;
 
   Point a_, e_;  // the first end, and the way to the other
