@@ -19,6 +19,7 @@ constexpr double most_of_height = 0.25;  // left out at either end
 Vector<3> axis_of(const Domain& domain, const Vector<3>& up) {
   Vector<3> axis = up;
   if (const auto* cylinder = std::get_if<Cylinder>(&domain)) axis = cylinder->axis.normalized();
+  if (const auto* revolved = std::get_if<Revolved>(&domain)) axis = revolved->axis.normalized();
   if (std::holds_alternative<Box>(domain)) {
     int nearest = 2;
     for (const int k : {1, 0})

@@ -32,6 +32,7 @@ double inner_volume(const Sphere& sphere, double z) { return std::pow(std::max(0
 /// Containers of facets are sampled.
 double inner_volume(const Mesh&, double) { return 0; }
 double inner_volume(const Polygon&, double) { return 0; }
+double inner_volume(const Revolved&, double) { return 0; }
 
 double deepest_of(const Box& box) {
   const Vector<3> size = bounds_of(box).size();
@@ -46,6 +47,7 @@ double deepest_of(const Cylinder& cylinder) {
 double deepest_of(const Sphere& sphere) { return sphere.radius; }
 double deepest_of(const Mesh&) { return 0; }
 double deepest_of(const Polygon&) { return 0; }
+double deepest_of(const Revolved&) { return 0; }
 
 /// The number of cells along each axis of a grid of about `wanted` roughly cubic cells over the bounds; a
 /// single layer or row where the bounds are thinner than a cube.
@@ -107,7 +109,7 @@ Depths::Depths(const Domain& shape, const Container& container, double reach, st
                const std::optional<LowerPart>& below)
     : below_(below),
       volume_(below ? volume_in(shape, *below) : container.volume()) {
-  if (std::holds_alternative<Mesh>(shape)) {
+  if (std::holds_alternative<Mesh>(shape) || std::holds_alternative<Revolved>(shape)) {
     shape_ = Mesh{};
     sampled_ = sample(container, reach, points, below, volume_);
     deepest_ = sampled_.empty() ? 0 : sampled_.back();

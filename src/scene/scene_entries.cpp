@@ -400,7 +400,11 @@ const std::vector<Entry>& container_entries() {
            .choices = {{{"size"}, {"edge"}, {}}},
            .rule = rule(periodic_rule),
            .complete = completion(complete_periodic)}),
-      polygon_entry()};
+      polygon_entry(),
+      cone_entry(),
+      tube_entry(),
+      lathed_entry(),
+      extruded_entry()};
   return all;
 }
 

@@ -199,11 +199,19 @@ const StageEntry& entry_of<Insert>() {
                            "where insertion stops; if absent 0.3, of a crystal at its last site",
                            packing_fractions())},
            .complete = completion(complete_insert)},
-          {.in_bed = true, .in_plane = true, .reaches = Reaches::insertion}),
+          {.in_bed = true,
+           .in_box = true,
+           .in_plane = true,
+           .prefers_bed = true,
+           .least_dimension = 2,
+           .most_dimensions = 3,
+           .reaches = Reaches::insertion}),
       .act_in_bed = of_options(insert),
+      .act_in_box = of_options(insert_crystal_in_box),
       .may_bring = {"insertion"},
       .effects = of_options(effects_of_insertion),
       .reached = of_options(+[](const Insert& options) { return options.until(); }),
+      .gain = of_options(gain_of_crystal),
       .full = of_options(+[](const Insert& options, const EmptyBed& bed) {
         if (options.is_crystal()) return full_crystal(options, bed);
         return options.layout == Layout::lattice ? full_lattice(bed) : full_at_random(options, bed);

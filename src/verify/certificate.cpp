@@ -34,7 +34,8 @@ void check_arguments(int dimension, const Domain& domain, const CertifyOptions& 
       throw Error(ErrorCode::bad_argument,
                   fmt::format("a gap is {}; it must be finite, and not negative", gap));
   const auto has_inset = [](const auto& shape) { return shape && shape->inset != 0; };
-  if (has_inset(std::get_if<Mesh>(&domain)) || has_inset(std::get_if<Polygon>(&domain)))
+  if (has_inset(std::get_if<Mesh>(&domain)) || has_inset(std::get_if<Polygon>(&domain)) ||
+      has_inset(std::get_if<Revolved>(&domain)))
     throw Error(ErrorCode::bad_argument, "the domain has an inset; certify with a wall_gap instead");
 
   if (dimension != dimension_of(domain))

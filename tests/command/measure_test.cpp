@@ -181,7 +181,8 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   ASSERT_EQ(bernal({"pack", box, "-o", out, "--quiet"}).status, 0);
   const Ended text = bernal({"measure", out});
   EXPECT_EQ(text.status, 0) << text.err;
-  for (const std::string part : {"with the wall", "porosity over the distance", "near the wall",
+  for (const std::string part : {"with the wall", "porosity over the distance z from the nearest", "near the wall",
+                                 "porosity along the axis", "from the side alone", "between walls: by the share",
                                  "core              packing fraction", "chambers          1; too narrow: ",
                                  "crystalline", "segregation", "drawn sequence    the same sizes to the bit"})
     EXPECT_NE(text.out.find(part), std::string::npos) << part << "\nis not in\n" << text.out;
@@ -204,7 +205,15 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   EXPECT_NEAR(share, 1, 1e-12);
   EXPECT_NEAR(integral, measured.at("walls").at("mean_porosity").get<double>(), 1e-9);
   EXPECT_EQ(measured.at("walls").at("mean_porosity"), report.at("walls").at("mean_porosity"));
-  EXPECT_TRUE(measured.at("g_r").is_null());
+  const auto& radial = measured.at("g_r");
+  EXPECT_EQ(radial.at("share").size(), radial.at("g").size());
+  const auto& column = measured.at("column");
+  EXPECT_EQ(column.at("has_lid"), measured.at("bed").is_null());
+  EXPECT_EQ(column.at("axis"), nlohmann::json::parse("[0.0, 0.0, 1.0]"));
+  EXPECT_GT(column.at("along").size(), 10u);
+  EXPECT_GT(column.at("side").at("profile").at("layers").size(), 3u);
+  EXPECT_EQ(column.at("side").at("profile").at("mean_porosity").get<double>() > 0, true);
+  EXPECT_EQ(column.at("side").at("from"), report.at("column").at("side").at("from"));
   EXPECT_EQ(measured.at("backbone").at("isostatic_contacts").is_null(),
             measured.at("backbone").at("spheres") == 0);
   EXPECT_EQ(measured.at("held_from_gap"), report.at("held_from_gap"));

@@ -103,7 +103,10 @@ std::string file_of_points() {
 }
 
 std::string sample_of(const Entry& entry, const Key& key, int choice) {
-  if (key.type == Type::file && entry.name == "polygon") return file_of_points();
+  const auto has_points = [](const Key& other) { return other.type == Type::points; };
+  if (key.type == Type::file && std::ranges::any_of(entry.keys, has_points)) return file_of_points();
+  if (key.name == "radii") return choice == 0 ? "[2, 0]" : "[1e-5, 3.0000000000000004]";
+  if (key.name == "inner_radius") return "0.05";
   for (const OutputTable* format : output_tables())
     if (&format->keys == &entry && key.type == Type::file)
       return choice == 0 ? "\"mine.x\"" : "'a \"b\" \\c'";

@@ -17,6 +17,7 @@
 #include "bernal/domain/mesh_file.hpp"
 #include "bernal/scene/bed_target.hpp"
 #include "bernal/scene/engine.hpp"
+#include "bernal/scene/shapes.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/solids/contact_treatment.hpp"
@@ -39,7 +40,8 @@ struct PeriodicBox {
 
 /// What is to be filled: `scene.container = Cylinder{.radius = 2, .height = 5}`. A box of two or three
 /// dimensions with walls all around is a Box; one that repeats itself is a PeriodicBox.
-struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon> {
+struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon, Cone, Tube,
+                                      Lathed, Extruded> {
   using variant::variant;
   Locations locations;
 };

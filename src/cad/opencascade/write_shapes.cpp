@@ -11,6 +11,7 @@
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
@@ -157,6 +158,17 @@ struct ContainerShape {
     BRepBuilderAPI_MakeSolid solid;
     for (; shell.More(); shell.Next()) solid.Add(TopoDS::Shell(shell.Current()));
     return solid.Solid();
+  }
+  TopoDS_Shape operator()(const Revolved& revolved) const {
+    const gp_Ax2 frame(point_at(revolved.base), direction_of(revolved.axis));
+    BRepBuilderAPI_MakePolygon profile;
+    for (const Vector<2>& p : revolved.profile)
+      profile.Add(gp_Pnt(frame.Location().XYZ() + p[0] * frame.XDirection().XYZ() +
+                         p[1] * frame.Direction().XYZ()));
+    profile.Close();
+    BRepBuilderAPI_MakeFace face(profile.Wire(), true);
+    if (!face.IsDone()) throw Failed{"OpenCASCADE makes no face of the container's profile"};
+    return BRepPrimAPI_MakeRevol(face.Shape(), frame.Axis()).Shape();
   }
   TopoDS_Shape operator()(const Polygon&) const { return {}; }
 };
