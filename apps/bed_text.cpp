@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "say.hpp"
 #include "structure_text.hpp"
 
 namespace bernal {
@@ -34,7 +35,7 @@ void print_bed(const BedProfile& bed, std::string_view unit) {
     fmt::print(
         "  core            {:.4f} from {:.4g} to {:.4g} {}, {:g} mean diameters from floor and surface\n",
         bed.core->porosity, bed.core->from, bed.core->to, unit, BedProfile::core_depth);
-  fmt::print("  rest            {}\n", rest_text(bed.rest, unit));
+  say(stdout, "  rest            {}\n", rest_text(bed.rest, unit));
   fmt::print("\npacking fraction over the height, in mean diameters of {:.6g} {}\n", bed.mean_diameter, unit);
   std::vector<double> fractions;
   for (const BedProfile::Layer& layer : bed.layers) fractions.push_back(layer.packing_fraction);

@@ -54,6 +54,8 @@ Explanation explanation() {
                    {"bernal sweep data/sweeps/exchange.toml -o out",
                     "many scenes at once: a grid over any keys, resumable, one table"},
                    {"bernal keys relax", "what a scene may say of a stage"},
+                   {"bernal keys roundness of the top", "which key was it?"},
+                   {"bernal help pack", "the options of a command"},
                    {"bernal predict --lognormal 0.5", "how densely spheres of these sizes pack"},
                    {"bernal design maximise --diameters 1,3,9", "how much of each size packs densest"},
                    {"bernal map 0.3 0.6 -o out", "how densely all their mixtures do"}},
@@ -97,8 +99,10 @@ int main(int argc, char** argv) {
                        explanation(),
                        {},
                        {pack_command(), verify_command(), inspect_command(), explain_command(),
-                        keys_command(), cost_command(), sweep_command(), measure_command(), export_command(),
+                        cost_command(), sweep_command(), measure_command(), export_command(),
                         import_command(), predict_command(), design_command(), map_command()}};
+    command.commands.insert(command.commands.begin() + 4, keys_command(command));
+    command.commands.push_back(help_command(command));
     command.commands.push_back(completion_command(command));
     command.commands.push_back(manual_command(command));
     status = run_command_line(argc, argv, command, "bernal " + bernal::text_of(bernal::this_program()));

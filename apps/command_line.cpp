@@ -200,6 +200,12 @@ Option with_units(Option option) {
   return offering(std::move(option), {names.begin(), names.end()});
 }
 
+std::vector<Option> joined(std::vector<Option> first, std::vector<Option> then, std::vector<Option> last) {
+  for (std::vector<Option>* more : {&then, &last})
+    for (Option& option : *more) first.push_back(std::move(option));
+  return first;
+}
+
 Option json_option(bool& json) { return {"--json", &json, "One JSON object on standard output"}; }
 
 Option quiet_option(bool& quiet, const std::string& what) { return {"--quiet", &quiet, what}; }

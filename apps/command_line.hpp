@@ -101,6 +101,9 @@ struct Command {
 /// Throws bernal::Error{bad_argument} with one line if it cannot be parsed, and what the command throws.
 int run_command_line(int argc, char** argv, const Command& bernal, const std::string& version);
 
+/// Lists of options, one after the other.
+std::vector<Option> joined(std::vector<Option> first, std::vector<Option> then, std::vector<Option> last);
+
 // Options that several commands have.
 Option json_option(bool& json);
 Option quiet_option(bool& quiet, const std::string& what = "Print nothing but the files and errors");

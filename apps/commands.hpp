@@ -8,7 +8,6 @@ Command inspect_command();
 Command explain_command();
 Command cost_command();
 Command sweep_command();
-Command keys_command();
 Command measure_command();
 Command predict_command();
 Command design_command();
@@ -16,6 +15,8 @@ Command map_command();
 Command export_command();
 Command import_command();
 // These describe all commands; `bernal` has to outlive them.
+Command help_command(const Command& bernal);
+Command keys_command(const Command& bernal);
 Command completion_command(const Command& bernal);
 Command manual_command(const Command& bernal);
 

@@ -150,9 +150,7 @@ int inspect(const InspectCall& call) {
   const MeshFile file{.file = call.mesh};
   const ImportedMesh imported = read_mesh(file);
   const MeshReport& report = imported.report;
-  std::vector<std::string> lines;
-  if (!report.usable()) lines = lines_that_help(file, {}, imported, Effort::thorough);
-  if (report.hollow_volume > 0) lines.emplace_back("interior = \"cavity\"");
+  const std::vector<std::string> lines = lines_that_help(file, {}, imported, Effort::thorough);
   if (!call.places.empty()) write_places(imported, call.places);
   std::optional<Chambers> chambers;
   if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);

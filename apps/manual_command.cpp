@@ -27,6 +27,12 @@ using namespace bernal;
 
 namespace {
 
+std::vector<std::string> names_of_commands(const Command& of) {
+  std::vector<std::string> names;
+  for (const Command& command : of.commands) names.push_back(command.name);
+  return names;
+}
+
 struct ManualCall {
   std::vector<std::string> names;
   std::filesystem::path folder;
@@ -87,6 +93,28 @@ int write_manual(const ManualCall& call, const Command& bernal) {
   throw Error(ErrorCode::bad_argument, fmt::format("there is no page {}{}", name, remedy(name, known)));
 }
 
+/// Prints what `COMMAND --help` prints; with no names that of bernal itself.
+int print_help(const std::vector<std::string>& names, const Command& bernal) {
+  const Command* of = &bernal;
+  std::vector<std::string> words{bernal.name};
+  for (const std::string& name : names) {
+    std::vector<std::string_view> known;
+    for (const Command& command : of->commands) known.push_back(command.name);
+    const auto found = std::ranges::find(of->commands, name, &Command::name);
+    if (found == of->commands.end())
+      throw Error(ErrorCode::bad_argument,
+                  known.empty() ? fmt::format("{} has no command of its own; leave \"{}\" out",
+                                              fmt::join(words, " "), name)
+                                : fmt::format("unknown command \"{}\"{}", name, remedy(name, known)));
+    of = &*found;
+    words.push_back(name);
+  }
+  words.emplace_back("--help");
+  std::vector<char*> call;
+  for (std::string& word : words) call.push_back(word.data());
+  return run_command_line(static_cast<int>(call.size()), call.data(), bernal, {});
+}
+
 int write_completion(const std::string& shell, const Command& bernal) {
   say(stdout, "{}", shell == "zsh" ? zsh_completion(bernal) : bash_completion(bernal));
   return exit_code::done;
@@ -94,14 +122,25 @@ int write_completion(const std::string& shell, const Command& bernal) {
 
 }  // namespace
 
+Command help_command(const Command& bernal) {
+  const auto names = std::make_shared<std::vector<std::string>>();
+  return {"help",
+          "Say what a command does, and its options: the same as COMMAND --help",
+          {offering({"COMMAND", names.get(), "The command, such as pack or design target; bernal if absent"},
+                    names_of_commands(bernal))},
+          {.examples = {{"bernal help", "all commands"},
+                        {"bernal help pack", "the options of one"},
+                        {"bernal keys container", "what a scene may say is told by keys"}},
+           .exit_codes = {{"0", "done"}, {"2", "bad input"}}},
+          [names, &bernal] { return print_help(*names, bernal); }};
+}
+
 Command manual_command(const Command& bernal) {
   const auto call = std::make_shared<ManualCall>();
-  std::vector<std::string> names;
-  for (const Command& command : bernal.commands) names.push_back(command.name);
   return {"manual",
           "Write the manual: a page for each command, as man reads it",
           {offering({"COMMAND", &call->names, "The command, such as pack or design target; bernal if absent"},
-                    names),
+                    names_of_commands(bernal)),
            folder({"-o,--output", &call->folder, "Folder for all pages; made if it does not exist", "DIR"})},
           {.text = "The Debian package brings these pages along: man bernal-pack. The day that they bear is "
                    "that of SOURCE_DATE_EPOCH, where it is set.",

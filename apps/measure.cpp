@@ -17,6 +17,7 @@
 #include "bernal/report/json.hpp"
 #include "bernal/report/section.hpp"
 #include "bernal/result/read_packing.hpp"
+#include "bernal/result/write_contacts.hpp"
 #include "bernal/result/write_local.hpp"
 #include "bernal/result/write_section.hpp"
 #include "commands.hpp"
@@ -24,6 +25,7 @@
 #include "say.hpp"
 #include "say_unpublished.hpp"
 #include "structure_text.hpp"
+#include "wall_text.hpp"
 
 using namespace bernal;
 
@@ -37,6 +39,7 @@ struct MeasureCall {
   std::optional<std::string> plane;  ///< of a section, where no measurements are asked for
   std::filesystem::path picture;     ///< of the section
   std::filesystem::path local;       ///< where the table of local packing fractions goes; empty: nowhere
+  std::filesystem::path contacts;    ///< and all contacts
 };
 
 /// Draws a section, and does no measurement.
@@ -59,6 +62,24 @@ std::string where_contacts_tell(const Measurements& measured) {
   return "of what holds what at none of these gaps";
 }
 
+/// How many spheres have how many contacts, and in which directions these are.
+void print_neighbours(const ContactSums& sums, std::size_t spheres) {
+  const std::vector<std::uint64_t> by_contacts = sums.spheres_by_contacts();
+  std::vector<std::string> shares;
+  for (std::size_t k = 0; k < by_contacts.size(); ++k)
+    if (by_contacts[k] > 0)
+      shares.push_back(fmt::format("{}: {:.3g} %", k,
+                                   100 * static_cast<double>(by_contacts[k]) / static_cast<double>(spheres)));
+  constexpr std::size_t in_a_line = 8;
+  for (std::size_t k = 0; k < shares.size(); k += in_a_line)
+    fmt::print("{:<18}{}\n", k == 0 ? "of a sphere" : "",
+               fmt::join(shares.begin() + static_cast<std::ptrdiff_t>(k),
+                         shares.begin() + static_cast<std::ptrdiff_t>(std::min(shares.size(), k + in_a_line)),
+                         ", "));
+  for (std::size_t k = 0; k < sums.fabric.size(); ++k)
+    fmt::print("{:<18}{:>8.4f}\n", k == 0 ? "fabric tensor" : "", fmt::join(sums.fabric[k], " "));
+}
+
 void print_contacts(const Packing& packing, const Measurements& measured) {
   const Contacts& c = measured.contacts;
   const bool walls = has_walls(packing.domain);
@@ -72,13 +93,14 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
     fmt::print("rattlers          {} ({:.2f} %), held by fewer than {} contacts\n", grouped(c.rattlers),
                100.0 * static_cast<double>(c.rattlers) / static_cast<double>(packing.spheres.size()),
                packing.spheres.dimension() + 1);
-    fmt::print("backbone          {} spheres, {} contacts, coordination {:.4f}{}\n", grouped(c.backbone),
-               grouped(c.backbone_pairs), c.backbone_coordination,
-               walls ? fmt::format("; {} with the wall", grouped(c.backbone_walls)) : "");
+    say(stdout, "backbone          {} spheres, {} contacts, coordination {:.4f}{}\n", grouped(c.backbone),
+        grouped(c.backbone_pairs), c.backbone_coordination,
+        walls ? fmt::format("; {} with the wall", grouped(c.backbone_walls)) : "");
     const double ratio = static_cast<double>(c.backbone_contacts()) / static_cast<double>(*c.isostatic);
     fmt::print("isostatic         {} contacts would just hold the backbone; there are {:.3g} % {}\n",
                grouped(*c.isostatic), 100 * std::abs(ratio - 1), ratio < 1 ? "fewer" : "more");
   }
+  print_neighbours(measured.of_contacts, packing.spheres.size());
   const bool can_polish = packing.spheres.dimension() != 2 || is_periodic(packing.domain);
   if (!packing.spheres.empty())
     fmt::print("contacts tell     {}{}{}\n", where_contacts_tell(measured),
@@ -98,15 +120,20 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
   }
 }
 
-void print_radial(const Packing& packing, const std::optional<RadialDistribution>& radial) {
+void print_radial(const Packing& packing, const std::optional<RadialDistribution>& radial,
+                  const std::optional<BedProfile>& bed) {
   if (!radial) {
-    fmt::print("\ng(r)              only in periodic boxes of two spheres or more\n");
+    say(stdout, "\ng(r)              only of two spheres or more, and between walls in three dimensions\n");
     return;
   }
   fmt::print("\ng(r), the radial distribution function; mean diameter {:.6g} {}, bins of {:.3g} {}\n",
              radial->mean_diameter, name_of(packing.scene.unit), radial->bin_width,
              name_of(packing.scene.unit));
   const double reach = radial->bin_width * static_cast<double>(radial->g.size()) / radial->mean_diameter;
+  if (!radial->share.empty())
+    fmt::print(
+        "between walls: by the share of each shell where centres may be{}; standard error up to {:.2g}\n",
+        part_of_bed(packing, bed), *std::ranges::max_element(radial->error));
   print_chart(radial->g, 3, 3, fmt::format("{:.3g} diameters", reach));
   for (const auto& peak : radial->peaks)
     fmt::print("peak              {:.2f} at {:.3f} diameters (± {:.2f}, ± {:.3f})\n", peak.g,
@@ -114,7 +141,7 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
 }
 
 void print_size_correlation(const SizeCorrelation& correlation) {
-  fmt::print("\nsize correlation  of two spheres, 0 where their sizes know nothing of each other\n");
+  say(stdout, "\nsize correlation  of two spheres, 0 where their sizes know nothing of each other\n");
   if (correlation.neighbours)
     fmt::print("  neighbours      {:.4f} ± {:.4f}, nearer than {:g} times the sum of their radii\n",
                correlation.neighbours->correlation, correlation.neighbours->error, 1 + BondOrder::widest_gap);
@@ -159,67 +186,6 @@ void print_order(const BondOrder& order) {
   if (order.core) fmt::print("  in the core     {}\n", percent(*order.core));
 }
 
-/// Prints layers in columns of ten: at the usual thickness a column is one mean diameter.
-void print_layers(const WallProfile& profile) {
-  constexpr std::size_t rows = 10, most_columns = 5;
-  const std::size_t n = std::min(profile.layers.size(), rows * most_columns);
-  for (std::size_t k = 0; k < n; k += rows) fmt::print("{:>9} {:>8}", "z", "porosity");
-  fmt::print("\n");
-  for (std::size_t row = 0; row < std::min(n, rows); ++row) {
-    for (std::size_t k = row; k < n; k += rows) {
-      const WallProfile::Layer& layer = profile.layers[k];
-      const bool last = k + 1 == profile.layers.size();
-      const double z = (last ? layer.from : 0.5 * (layer.from + layer.to)) / profile.mean_diameter;
-      fmt::print("{:>9} {:>8.4f}", fmt::format("{}{:.2f}", last ? ">" : "", z), layer.porosity);
-    }
-    fmt::print("\n");
-  }
-}
-
-/// "; of the bed below 24.1 mm"
-std::string part_of_bed(const Packing& packing, const std::optional<BedProfile>& bed) {
-  if (!bed || !bed->level) return {};
-  return fmt::format("; of the bed below {:.4g} {}", *bed->level, name_of(packing.scene.unit));
-}
-
-void print_walls(const Packing& packing, const Measurements& measured) {
-  const WallProfile& profile = *measured.walls;
-  fmt::print("\nporosity over the distance z from the wall, in mean diameters of {:.6g} {}{}\n",
-             profile.mean_diameter, name_of(packing.scene.unit), part_of_bed(packing, measured.bed));
-  const std::size_t even = profile.layers.size() - 1;  // the last layer holds all that is deeper
-  if (even > 1) {
-    std::vector<double> porosities;
-    for (std::size_t k = 0; k < even; ++k) porosities.push_back(profile.layers[k].porosity);
-    print_chart(porosities, 1, 6,
-                fmt::format("{:.3g} diameters", profile.layers[even].from / profile.mean_diameter));
-  }
-  print_layers(profile);
-  double error = 0;
-  for (const WallProfile::Layer& layer : profile.layers) error = std::max(error, layer.error);
-  fmt::print("\nmean porosity     {:.6f}; standard error of a layer at most {:.2g}\n", profile.mean_porosity,
-             error);
-  if (profile.first_minimum)
-    fmt::print("first minimum     {:.3f} at {:.3f} mean diameters\n", profile.first_minimum->porosity,
-               profile.first_minimum->z / profile.mean_diameter);
-  fmt::print("near the wall     packing fraction {:.4f} within a mean diameter\n",
-             profile.near_wall_packing_fraction);
-  fmt::print("core              packing fraction {:.4f} ± {:.4f} beyond {:.3g} mean diameters{}\n",
-             profile.core_packing_fraction, profile.core_packing_error,
-             profile.core_from / profile.mean_diameter,
-             profile.has_core ? "" : ", the deeper half: too narrow for a core");
-  constexpr std::size_t rows_of_sizes = 10;
-  if (profile.segregation && profile.segregation->error > 0) {
-    fmt::print("\nmean volume of the spheres whose surface is so far from the wall, of that of all\n");
-    for (std::size_t k = 0; k < std::min(profile.layers.size(), rows_of_sizes); ++k)
-      if (const auto& there = profile.layers[k].segregation)
-        fmt::print("{:>9.2f} {:>8.4f} ± {:.4f}, {} spheres\n", profile.layers[k].from / profile.mean_diameter,
-                   there->volume_ratio, there->error, grouped(there->spheres));
-  }
-  if (profile.segregation)
-    fmt::print("segregation       mean volume near the wall {:.4f} ± {:.4f} of that of all spheres\n",
-               profile.segregation->volume_ratio, profile.segregation->error);
-}
-
 void print_drawn(const DrawnComparison& drawn) {
   if (drawn.missing == 0 && drawn.scale != 1)
     fmt::print("drawn sequence    the same sizes, all times {:.9g} and here without that, less its tail",
@@ -253,12 +219,19 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
              sizes.volume_ratio_error);
   if (sizes.drawn) print_drawn(*sizes.drawn);
   if (sizes.classes.size() == 1) return;
-  if (!sizes.classes.empty()) {
-    fmt::print("\n{:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres", "share",
-               "asked");
-    for (const auto& c : sizes.classes)
-      fmt::print("{:>12.6g} {:>12} {:>12.5f} {:>12.5f}\n", factor * c.radius, grouped(c.count),
-                 static_cast<double>(c.count) / static_cast<double>(packing.spheres.size()), c.asked_share);
+  std::vector<std::string> there, asked;
+  for (const auto& [share, realised, of_asked] : sizes.volume_quantiles) {
+    there.push_back(fmt::format("D{:.0f} {:.5g}", 100 * share, 2 * realised));
+    asked.push_back(fmt::format("{:.5g}", 2 * of_asked));
+  }
+  fmt::print("by {:<14} {} as diameters; asked {}\n", packing.spheres.dimension() == 2 ? "area" : "volume",
+             fmt::join(there, ", "), fmt::join(asked, ", "));
+  if (!sizes.classes.empty() && sizes.shares.size() == sizes.classes.size()) {  // few
+    say(stdout, "\n{:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", diameters ? "diameter" : "radius", "spheres",
+        "by number", "asked", packing.spheres.dimension() == 2 ? "by area" : "by volume", "asked");
+    for (const SizeComparison::Share& c : sizes.shares)
+      fmt::print("{:>12.6g} {:>12} {:>12.5f} {:>12.5f} {:>12.5f} {:>12.5f}\n", factor * c.up_to,
+                 grouped(c.count), c.number, c.asked_number, c.volume, c.asked_volume);
     return;
   }
   fmt::print("\n{:>12} {:>12} {:>12}\n", "share below", diameters ? "diameter" : "radius", "asked");
@@ -271,20 +244,22 @@ void print_sizes(const Packing& packing, const SizeComparison& sizes) {
 constexpr std::size_t most_cells = 20'000'000;
 
 void print(const Packing& packing, const Measurements& measured) {
-  fmt::print("spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
-             name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
-             name_of(packing.scene.unit));
+  speak_of(packing.spheres.dimension());
+  say(stdout, "spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
+      name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
+      name_of(packing.scene.unit));
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);
-  print_radial(packing, measured.radial);
+  print_radial(packing, measured.radial, measured.bed);
   if (measured.size_correlation) print_size_correlation(*measured.size_correlation);
   if (measured.bed) print_bed(*measured.bed, name_of(packing.scene.unit));
   if (measured.walls) print_walls(packing, measured);
+  if (measured.column) print_column(packing, *measured.column);
   if (measured.order && !packing.spheres.empty()) print_order(*measured.order);
   if (measured.local) print_local(packing, *measured.local);
   if (!measured.local && packing.spheres.size() > most_cells)
-    fmt::print("\nlocal packing     not of so many spheres, unless --local FILE asks for it\n");
+    say(stdout, "\nlocal packing     not of so many spheres, unless --local FILE asks for it\n");
   if (measured.pores) print_pores(packing, *measured.pores, part_of_bed(packing, measured.bed));
   if (measured.structure) print_structure(*measured.structure);
   if (measured.sizes) print_sizes(packing, *measured.sizes);
@@ -306,6 +281,11 @@ Measurements measured_of(const Packing& packing, const MeasureCall& call, const 
   }
 }
 
+/// The options that a call and a scene give.
+ContactOptions contact_options_of(const Packing& packing, const MeasureCall& call) {
+  return {call.options.contact_gap, packing.scene.gap, packing.scene.wall_gap, packing.container};
+}
+
 int measure_folder(const MeasureCall& call) try {
   if (call.plane) return draw_section(call);
   std::optional<tbb::global_control> limit;
@@ -315,6 +295,7 @@ int measure_folder(const MeasureCall& call) try {
   bar.now("measure");
   const Packing packing = read_packing(call.folder);
   say_if_unpublished(call.folder);
+  if (!call.contacts.empty()) check_contacts_file(call.contacts, packing.spheres.dimension());
   const Measurements measured = measured_of(packing, call, bar.monitor());
   bar.clear();
   if (!call.local.empty()) {
@@ -323,6 +304,9 @@ int measure_folder(const MeasureCall& call) try {
                   "--local: local packing fractions are those of spheres in two or three dimensions");
     write_local(packing, *measured.local, call.local);
   }
+  if (!call.contacts.empty())
+    write_contacts(packing, contact_list(packing.spheres, packing.domain, contact_options_of(packing, call)),
+                   call.contacts);
   if (call.json)
     fmt::print("{}", measurements_as_json(packing, measured));
   else
@@ -354,6 +338,10 @@ Command measure_command() {
         "Write the local packing fraction, the volume of the cell and the number of neighbours of every "
         "sphere into this table",
         "FILE.csv"},
+       {"--contacts", &call->contacts,
+        "Write all contacts into this file, .csv, .npy or .vtp by its ending: i, j (counted from 0, -1 is a "
+        "wall), the distance of the surfaces, the unit normal from i to j, the place",
+        "FILE"},
        threads_option(call->threads, "the answer"),
        json_option(call->json)},
       {.text =
@@ -370,6 +358,7 @@ Command measure_command() {
            "Everywhere: how far it is from points in the pores to the nearest solid.",
        .examples = {{"bernal measure out", "everything, for people"},
                     {"bernal measure out --json", "everything, for programs"},
+                    {"bernal measure out --contacts contacts.csv --gap 0.001", "and every contact"},
                     {"bernal measure out --local cells.csv", "and a table of the cell of every sphere"},
                     {"bernal measure out --section \"z = 1.5\" -o section.svg", "a picture of a section"}},
        .exit_codes = {{"0", "done"}, {"2", "bad input"}, {"3", "stopped by Ctrl-C, nothing printed"}}},

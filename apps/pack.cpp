@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -12,15 +11,14 @@
 
 #include <fmt/format.h>
 
-#include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/core/unit.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"
 #include "commands.hpp"
+#include "mesh_flags.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
 
@@ -30,9 +28,7 @@ namespace {
 
 struct PackCall {
   std::filesystem::path scene;  ///< or a mesh, where the flags say what is packed into it
-  std::string unit;
-  std::optional<double> diameter;
-  std::vector<double> lognormal;  ///< median and sigma of the diameter
+  MeshFlags flags;
   std::filesystem::path folder;
   std::optional<std::uint64_t> seed;
   int threads = 0;
@@ -44,68 +40,16 @@ struct PackCall {
   double checkpoint_every = CheckpointOptions().every;  ///< seconds; 0: none
 };
 
-/// The unit that a CAD file says of itself, as those of STEP, IGES, 3MF, AMF and glTF do. Cost: reads the
-/// file.
-Unit unit_of_file(const std::filesystem::path& file) {
-  const MeshReport report = read_mesh(MeshFile{file}).report;
-  if (const auto unit = unit_of_metres(report.stated_metres)) return *unit;
-  const Vector<3> size = report.bounds.size();
-  throw Error(
-      ErrorCode::bad_argument,
-      report.unit.empty()
-          ? fmt::format(
-                "the file does not say its unit; it is {:.4g} × {:.4g} × {:.4g} units large: give the "
-                "unit of these and of all lengths, such as --unit mm",
-                size.x(), size.y(), size.z())
-          : fmt::format("the file is in {}, in which no scene can be: give the unit of all lengths, "
-                        "such as --unit m",
-                        report.unit),
-      {file.string()});
-}
-
-/// The scene that the flags stand for.
-Scene scene_of_flags(const PackCall& call) {
-  Scene scene;
-  scene.unit = call.unit.empty() ? unit_of_file(call.scene) : unit_named(call.unit);
-  scene.container = MeshFile{call.scene};
-  scene.sizes_are_diameters = true;
-  if (call.diameter)
-    scene.sizes = Constant{*call.diameter};
-  else
-    scene.sizes = Lognormal{.median = call.lognormal.at(0), .sigma = call.lognormal.at(1)};
-  complete(scene);
-  return scene;
-}
-
-Scene scene_of(const PackCall& call) {
-  const bool has_sizes = call.diameter || !call.lognormal.empty();
-  if (call.scene.extension() != ".toml" && has_sizes) return scene_of_flags(call);
-  if (!has_sizes && is_mesh_file_name(call.scene))
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("{} is a mesh, not a scene; say what is packed into it, such as --unit mm "
-                            "--diameter 2, or name it as \"file\" in the [container] of a scene",
-                            call.scene.string()));
-  if (has_sizes || !call.unit.empty())
-    throw Error(ErrorCode::bad_argument,
-                has_sizes ? "a scene says itself what is packed; leave out --diameter and --lognormal"
-                          : "--unit is for a mesh, with --diameter or --lognormal");
-  return read_scene(call.scene);
-}
-
-std::vector<std::string> scene_and_mesh_endings() {
-  std::vector<std::string> endings{".toml"};
-  for (const std::string_view ending : mesh_file_endings()) endings.emplace_back(ending);
-  return endings;
-}
-
 void print_result(const Packing& packing, std::uint64_t spheres, double packing_fraction,
                   const WrittenPacking& written) {
+  speak_of(packing.scene.dimension());
   const std::optional<double> mass = mass_of(packing, packing_fraction);
   say(stderr, "packed     {}{}, packing fraction {:.4f} ({:.3f} was expected), in {:.1f} s\n",
       spheres == 1 ? "1 sphere" : grouped(spheres) + " spheres",
       mass ? fmt::format(", {:.6g} kg", *mass) : std::string(), packing_fraction,
       packing.expected_packing_fraction, packing.seconds);
-  say(stderr, "outcome    {}: {}\n", name_of(packing.outcome), packing.reason);
+  const std::string end = fmt::format("{}: {}", name_of(packing.outcome), packing.reason);
+  say(stderr, "outcome    {}\n", falls_short(packing.outcome) ? in_amber(stderr, end) : end);
   say(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)
     say(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
@@ -149,7 +93,7 @@ int pack_slabs(const PackCall& call, const Plan& plan, const std::filesystem::pa
 int pack(const PackCall& call) {
   ProgressBar bar(call.quiet);
   bar.now("read");
-  Scene scene = scene_of(call);
+  Scene scene = scene_of(call.scene, call.flags);
   if (call.seed && scene.target.mass) scene.seed = *call.seed;  // of whose radii it is the mass
   const Plan plan = build(scene);
   const std::filesystem::path folder = call.folder.empty() ? call.scene.stem() : call.folder;
@@ -200,37 +144,32 @@ Command pack_command() {
   return {
       "pack",
       "Run a scene and write the packing, its report and its proof",
-      {file(required({"SCENE", &call->scene, "The scene, a TOML file; or a mesh, with its unit and sizes",
-                      "SCENE|MESH"}),
-            scene_and_mesh_endings()),
-       folder({"-o,--output", &call->folder,
-               "Folder for the results; made if it does not exist; named after the scene if absent", "DIR"}),
-       with_units(
-           {"--unit", &call->unit,
-            "Of a mesh and of all lengths: nm, um, mm, cm, m, in, ft; a file that says its own needs none",
-            "UNIT"}),
-       {"--diameter", &call->diameter, "Of every sphere in a mesh", "D"},
-       excludes(
-           list_of(2, {"--lognormal", &call->lognormal, "Lognormal diameters in a mesh", "MEDIAN,SIGMA"}),
-           "--diameter"),
-       {"--with-mesh", &call->with_mesh,
-        "Copy the CAD files, and what the scene starts from, beside the spheres too, so that the folder "
-        "stands for itself"},
-       {"--no-view", &call->no_view,
-        "Leave the view to turn out of report.html, which is then smaller: a picture and plots"},
-       {"--binary", &call->as_array,
-        "Write spheres.npy, an array of doubles, in the place of spheres.csv and spheres.vtp, as more than "
-        "5 million spheres are"},
-       seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
-                   [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
-       threads_option(call->threads, "the result"),
-       {"--resume", &call->resume,
-        "Go on from the checkpoint in DIR, to the very result of a run that nothing ended; start anew where "
-        "there is none"},
-       within({"--checkpoint-every", &call->checkpoint_every,
-               "Seconds between two checkpoints in DIR, 60 if absent; 0: none", "SECONDS"},
-              0.0, 1e9),
-       quiet_option(call->quiet, "Print nothing but errors")},
+      joined(
+          {scene_or_mesh(call->scene),
+           folder({"-o,--output", &call->folder,
+                   "Folder for the results; made if it does not exist; named after the scene if absent",
+                   "DIR"})},
+          options_of(call->flags),
+          {{"--with-mesh", &call->with_mesh,
+            "Copy the CAD files, and what the scene starts from, beside the spheres too, so that the folder "
+            "stands for itself"},
+           {"--no-view", &call->no_view,
+            "Leave the view to turn out of report.html, which is then smaller: a picture and plots"},
+           {"--binary", &call->as_array,
+            "Write spheres.npy, an array of doubles, in the place of spheres.csv and spheres.vtp, as more "
+            "than "
+            "5 million spheres are"},
+           seed_option("Instead of the scene's; one seed gives one packing, bit for bit",
+                       [call = call.get()](std::uint64_t seed) { call->seed = seed; }),
+           threads_option(call->threads, "the result"),
+           {"--resume", &call->resume,
+            "Go on from the checkpoint in DIR, to the very result of a run that nothing ended; start anew "
+            "where "
+            "there is none"},
+           within({"--checkpoint-every", &call->checkpoint_every,
+                   "Seconds between two checkpoints in DIR, 60 if absent; 0: none", "SECONDS"},
+                  0.0, 1e9),
+           quiet_option(call->quiet, "Print nothing but errors")}),
       {.text =
            "Ctrl-C and SIGTERM end the run at the next safe point: it keeps a checkpoint and writes what is "
            "there, certified; --resume goes on from there, and after a SIGKILL from the last checkpoint. For "
@@ -253,7 +192,10 @@ Command pack_command() {
        .examples = {{"bernal pack data/scenes/hopper.toml", "results in hopper/"},
                     {"bernal pack bracket.stl --unit mm --diameter 2",
                      "no scene needed; results in bracket/"},
-                    {"bernal pack bracket.stl --unit mm --lognormal 2,0.3", "median 2 mm, sigma 0.3"}},
+                    {"bernal pack bracket.stl --unit mm --lognormal 2,0.3", "median 2 mm, sigma 0.3"},
+                    {"bernal pack bracket.stl --unit mm --radius 1 --count 500", "500 of them"},
+                    {"bernal pack bracket.step --diameter 2 --fill",
+                     "as many as can be made to fit; the file says its unit"}},
        .exit_codes = {{"0", "done"},
                       {"2", "bad input, nothing written"},
                       {"3",

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "say.hpp"
 
 namespace bernal {
 
@@ -31,8 +32,8 @@ void print_chart(const std::vector<double>& values, int highest, int rows_a_unit
 }
 
 void print_local(const Packing& packing, const LocalPacking& local) {
-  fmt::print("\nlocal packing     {:.4f} ± {:.4f}, mean and deviation of a sphere's share of its cell\n",
-             local.mean, local.deviation);
+  say(stdout, "\nlocal packing     {:.4f} ± {:.4f}, mean and deviation of a sphere's share of its cell\n",
+      local.mean, local.deviation);
   if (!local.quantiles.empty()) {
     std::string quantiles;
     for (const auto& [share, phi] : local.quantiles)
@@ -41,7 +42,7 @@ void print_local(const Packing& packing, const LocalPacking& local) {
   }
   fmt::print("  neighbours      {:.2f} cells share a face with a cell\n", local.mean_neighbours);
   if (local.empty > 0)
-    fmt::print("  no cell         {} spheres, hidden in others or outside\n", grouped(local.empty));
+    say(stdout, "  no cell         {} spheres, hidden in others or outside\n", grouped(local.empty));
   fmt::print("  all cells       fill the {} to {:.1g} of its {}\n",
              has_walls(packing.domain) ? "container" : "box", std::max(local.volume_error, 1e-12),
              packing.spheres.dimension() == 2 ? "area" : "volume");

@@ -142,6 +142,7 @@ int verify(const VerifyCall& call) {
                                        ? read_spheres_of(scene, call.target)
                                        : read_columns_of(scene, call.target);
   const Domain domain = packed_domain_of(scene);
+  speak_of(scene.dimension());
 
   ProgressBar bar(call.json, true);
   const CertifyOptions options{.allowed_overlap = scene.overlap,

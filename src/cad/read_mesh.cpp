@@ -313,6 +313,23 @@ ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose) {
   }
 }
 
+Unit unit_of_mesh_file(const std::filesystem::path& file) {
+  const MeshReport report = read_mesh(MeshFile{file}).report;
+  if (const auto unit = unit_of_metres(report.stated_metres)) return *unit;
+  const Vector<3> size = report.bounds.size();
+  throw Error(
+      ErrorCode::bad_argument,
+      report.unit.empty()
+          ? fmt::format(
+                "the file does not say its unit; it is {:.4g} × {:.4g} × {:.4g} units large: give the "
+                "unit of these and of all lengths, such as ‹unit=mm›",
+                size.x(), size.y(), size.z())
+          : fmt::format("the file is in {}, in which no scene can be: give the unit of all lengths, "
+                        "such as ‹unit=m›",
+                        report.unit),
+      {file.string()});
+}
+
 ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose) {
   ImportedMesh result = read_mesh(options, purpose);
   if (result.report.usable()) return result;

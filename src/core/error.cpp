@@ -12,4 +12,9 @@ Error::Error(ErrorCode code, const std::string& message, Location location)
       code_(code),
       location_(std::move(location)) {}
 
+std::string Error::message() const {
+  const std::string where = location_.text(), all = what();
+  return where.empty() ? all : all.substr(where.size() + 2);
+}
+
 }  // namespace bernal

@@ -172,6 +172,39 @@ std::string with_options(std::string_view message, const OptionInWords& in_words
   return text;
 }
 
+std::string in_dimension(int dimension, std::string_view text) {
+  constexpr std::pair<std::string_view, std::string_view> words[] = {
+      {"spheres", "discs"}, {"sphere", "disc"}, {"Spheres", "Discs"}, {"Sphere", "Disc"}};
+  constexpr std::string_view names_before = "_[\"'/=.#<", names_after = "_]\"'/=";
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  if (dimension != 2) return std::string(text);
+  std::string all;
+  for (std::size_t at = 0; at < text.size();) {
+    const char before = at > 0 ? text[at - 1] : ' ';
+    const auto found = std::ranges::find_if(words, [&](const auto& word) {
+      return text.substr(at).starts_with(word.first) &&
+             !is_letter(at + word.first.size() < text.size() ? text[at + word.first.size()] : ' ');
+    });
+    if (found == std::end(words) || is_letter(before) || names_before.find(before) != text.npos) {
+      all += text[at++];
+      continue;
+    }
+    const auto& [sphere, disc] = *found;
+    const std::string_view rest = text.substr(at + sphere.size());
+    const bool is_name =
+        (!rest.empty() && names_after.find(rest[0]) != rest.npos && !rest.starts_with("'s")) ||
+        (rest.size() > 1 && rest[0] == '.' && is_letter(rest[1]));
+    const std::string blanks(sphere.size() - disc.size(), ' ');
+    if (!is_name && all.ends_with("  ") && !rest.starts_with("  ")) all += blanks;
+    all += is_name ? sphere : disc;
+    if (!is_name && rest.starts_with("  ")) all += blanks;
+    at += sphere.size();
+  }
+  return all;
+}
+
 std::string grouped(std::uint64_t n) {
   std::string digits = std::to_string(n);
   for (std::size_t from_right = 3; from_right < digits.size(); from_right += 4) {

@@ -12,6 +12,7 @@ std::unique_ptr<Container> make_box(const Box&, WallArithmetic, double resolutio
 std::unique_ptr<Container> make_cylinder(const Cylinder&, WallArithmetic, double resolution);
 std::unique_ptr<Container> make_sphere(const Sphere&, WallArithmetic, double resolution);
 std::unique_ptr<Container> make_polygon(const Polygon&, WallArithmetic, double resolution);
+std::unique_ptr<Container> make_revolved(const Revolved&, WallArithmetic, double resolution);
 
 /// Decides `clearance >= r` as the arithmetic promises; `error` bounds the rounding error of clearance - r
 /// and `exactly` is asked where the double cannot or must not decide.

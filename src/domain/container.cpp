@@ -14,13 +14,13 @@ namespace {
 
 /// Whether the nearest point of a facet is on another one that comes nearer to the centre. Then it is no
 /// nearest point of the wall as a whole: next to it, on the other facet, the wall comes nearer. This
-/// happens where triangles share an edge or a corner; the pieces of analytic walls never share their nearest
+/// happens where triangles or frustums share an edge or a corner; the pieces of analytic walls never share their nearest
 /// points.
 bool on_nearer_facet(const Vector<3>& q, std::size_t index, const std::vector<NearFacet>& near,
                      double tolerance) {
-  if (near[index].facet.kind != Facet::Kind::triangle) return false;
+  if (!has_border(near[index].facet.kind)) return false;
   for (std::size_t k = 0; k < index; ++k) {
-    if (near[k].facet.kind == Facet::Kind::triangle && distance(near[k].facet, q) <= tolerance) return true;
+    if (has_border(near[k].facet.kind) && distance(near[k].facet, q) <= tolerance) return true;
   }
   return false;
 }
@@ -37,9 +37,18 @@ Vector<3> inward_normal(const Facet& f, const Vector<3>& q, const Vector<3>& c, 
       return -outward / f.radius;
     }
     case Facet::Kind::triangle:
+    case Facet::Kind::frustum:
       break;
   }
   if (d > 0 && c != q) return (c - q).normalized();
+  if (f.kind == Facet::Kind::frustum) {  // on it: the side is unknown, so towards the axis or along it
+    const Vector<2> e(f.c[1] - f.c[0], f.c[2]);
+    Vector<3> outward = q - f.a;
+    outward -= outward.dot(f.b) * f.b;
+    if (outward.squaredNorm() > 0) outward.normalize();
+    const Vector<3> n = e[1] * outward - e[0] * f.b;
+    return (e[1] > 0 ? Vector<3>(-n) : n).normalized();
+  }
   return -(f.b - f.a).cross(f.c - f.a).normalized();
 }
 
@@ -113,7 +122,7 @@ void Container::walls_near(const Vector<3>& c, double reach, std::vector<WallPoi
   facets_near(c, reach, near);
   // Triangles share edges and corners, and the walls inside of them do not where they stand behind.
   for (NearFacet& n : near)
-    if (n.facet.kind == Facet::Kind::triangle) n.facet.radius = 0;
+    if (has_border(n.facet.kind)) n.facet.radius = 0;
   // A nearest point is known to a few resolutions, and so is its distance from another facet.
   const double tolerance = 32 * resolution_;
   for (std::size_t i = 0; i < near.size(); ++i) {
@@ -152,6 +161,10 @@ std::unique_ptr<Container> make_analytic_container(const Domain& shape, WallArit
   if (const auto* polygon = std::get_if<Polygon>(&shape)) {
     require_simple(*polygon);
     return make_polygon(*polygon, arithmetic, resolution);
+  }
+  if (const auto* revolved = std::get_if<Revolved>(&shape)) {
+    require_profile(*revolved);
+    return make_revolved(*revolved, arithmetic, resolution);
   }
   throw Error(ErrorCode::bad_argument, "a mesh is no analytic container: use make_mesh_container");
 }

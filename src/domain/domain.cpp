@@ -39,6 +39,37 @@ Bounds<3> bounds_of_cylinder(const Cylinder& s) {
   return {s.base.cwiseMin(top) - half, s.base.cwiseMax(top) + half};
 }
 
+/// Those of the circles at the corners of the profile.
+Bounds<3> bounds_of_revolved(const Revolved& s) {
+  const Vector<3> axis = s.axis.stableNormalized();
+  Vector<3> across;
+  for (int k = 0; k < 3; ++k) across[k] = std::hypot(axis[(k + 1) % 3], axis[(k + 2) % 3]);
+  auto bounds = Bounds<3>::of_nothing();
+  for (const Vector<2>& p : s.profile) {
+    const Vector<3> center = s.base + p[1] * axis;
+    bounds.add(center - p[0] * across);
+    bounds.add(center + p[0] * across);
+  }
+  return s.profile.empty() ? Bounds<3>() : bounds;
+}
+
+/// The integral of pi r² dz along the profile.
+double volume_of_revolved(const Revolved& s) {
+  if (s.profile.empty()) return 0;
+  const double level = s.profile.front()[1];
+  double sum = 0;
+  s.for_each_edge([&](const Vector<2>& a, const Vector<2>& b) {
+    sum += (a[0] * a[0] + a[0] * b[0] + b[0] * b[0]) * ((b[1] - level) - (a[1] - level));
+  });
+  return std::numbers::pi / 3 * std::abs(sum);
+}
+
+double area_of_revolved(const Revolved& s) {
+  double sum = 0;
+  s.for_each_edge([&](const Vector<2>& a, const Vector<2>& b) { sum += (a[0] + b[0]) * (b - a).norm(); });
+  return std::numbers::pi * sum;
+}
+
 /// The points of a domain of two dimensions in the plane z = 0.
 Vector<3> in_space(const Vector<dynamic>& p) {
   Vector<3> q = Vector<3>::Zero();
@@ -126,13 +157,15 @@ std::string_view kind_of(const Domain& domain) {
                  [](const Cylinder&) -> std::string_view { return "cylinder"; },
                  [](const Sphere&) -> std::string_view { return "sphere"; },
                  [](const Mesh&) -> std::string_view { return "mesh"; },
-                 [](const Polygon&) -> std::string_view { return "polygon"; }},
+                 [](const Polygon&) -> std::string_view { return "polygon"; },
+                 [](const Revolved&) -> std::string_view { return "revolved"; }},
       domain);
 }
 
 std::string name_of(const Domain& domain) {
   const auto* cylinder = std::get_if<Cylinder>(&domain);
   if (cylinder && cylinder->periodic) return "periodic cylinder";
+  if (std::holds_alternative<Revolved>(domain)) return "solid of revolution";
   const auto* box = std::get_if<Box>(&domain);
   if (!box || !box->repeats()) return std::string(kind_of(domain));
   if (!box->has_walls()) return "periodic box";
@@ -161,7 +194,8 @@ int symmetries_of(const Domain& domain) {
                    return shifts;
                  },
                  [](const Cylinder& s) { return s.periodic ? 2 : 1; }, [](const Sphere&) { return 3; },
-                 [](const Mesh&) { return 0; }, [](const Polygon&) { return 0; }},
+                 [](const Mesh&) { return 0; }, [](const Polygon&) { return 0; },
+                 [](const Revolved&) { return 1; }},
       domain);
 }
 
@@ -169,7 +203,7 @@ bool is_periodic(const Domain& domain) {
   return std::visit(
       Overloaded{[](const Box& s) { return s.repeats(); }, [](const Cylinder& s) { return s.periodic; },
                  [](const Sphere&) { return false; }, [](const Mesh&) { return false; },
-                 [](const Polygon&) { return false; }},
+                 [](const Polygon&) { return false; }, [](const Revolved&) { return false; }},
       domain);
 }
 
@@ -194,6 +228,8 @@ Bounds<D> bounds_of(const Domain& domain) {
                                    bounds = bounds_of_cylinder(s);
                                  else if constexpr (std::is_same_v<decltype(s), const Sphere&>)
                                    bounds = bounds_of_sphere(s);
+                                 else if constexpr (std::is_same_v<decltype(s), const Revolved&>)
+                                   bounds = bounds_of_revolved(s);
                                  else
                                    bounds = bounds_of(s);
                                  return Bounds<D>{bounds.lower, bounds.upper};
@@ -212,7 +248,10 @@ double volume_of(const Domain& domain) {
                  [](const Cylinder& s) { return pi * s.radius * s.radius * s.height; },
                  [](const Sphere& s) { return ball_volume(3, s.radius); },
                  [](const Mesh& s) { return volume_within(signed_volume(s), area_of(s), s.inset); },
-                 [](const Polygon& s) { return volume_within(area_of_polygon(s), length_of(s), s.inset); }},
+                 [](const Polygon& s) { return volume_within(area_of_polygon(s), length_of(s), s.inset); },
+                 [](const Revolved& s) {
+                   return volume_within(volume_of_revolved(s), area_of_revolved(s), s.inset);
+                 }},
       domain);
 }
 
@@ -230,7 +269,8 @@ double area_of(const Domain& domain) {
           },
           [](const Cylinder& s) { return 2 * pi * s.radius * ((s.periodic ? 0 : s.radius) + s.height); },
           [](const Sphere& s) { return 4 * pi * s.radius * s.radius; },
-          [](const Mesh& s) { return area_of(s); }, [](const Polygon& s) { return length_of(s); }},
+          [](const Mesh& s) { return area_of(s); }, [](const Polygon& s) { return length_of(s); },
+          [](const Revolved& s) { return area_of_revolved(s); }},
       domain);
 }
 
@@ -323,6 +363,12 @@ Domain to_local(const Domain& shape, const Frame& frame) {
                                [&](Polygon s) -> Domain {
                                  for (auto& loop : s.loops)
                                    for (Vector<2>& v : loop) v = frame.to_local(in_space(v)).head<2>();
+                                 s.inset /= frame.scale;
+                                 return s;
+                               },
+                               [&](Revolved s) -> Domain {
+                                 s.base = frame.to_local(s.base);
+                                 for (Vector<2>& p : s.profile) p /= frame.scale;
                                  s.inset /= frame.scale;
                                  return s;
                                }},

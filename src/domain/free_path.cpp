@@ -1,15 +1,15 @@
 #include "domain/free_path.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cfloat>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "bernal/core/tolerance.hpp"
 #include "core/rounding.hpp"
 #include "domain/exact_way.hpp"
+#include "domain/frustum.hpp"
+#include "domain/last_clear.hpp"
 #include "kernels/first_contact.hpp"
 
 namespace bernal {
@@ -128,41 +128,6 @@ View last_view(const WideWay& way, long double limit) {
 
 // ---- exactly
 
-/// The last double in [0, limit) before `clears` becomes false, which it is at the limit and not at 0.
-/// Doubles of one sign are in the order of their bits. Cost: two questions where the guess is right, twice
-/// the logarithm of how many doubles it is off otherwise.
-template <class Clears>
-double last_clear(double guess, double limit, const Clears& clears) {
-  const auto value = [](std::uint64_t bits) { return std::bit_cast<double>(bits); };
-  std::uint64_t low = 0, high = std::bit_cast<std::uint64_t>(limit);
-  std::uint64_t at = std::bit_cast<std::uint64_t>(guess > 0 ? std::min(guess, limit) : 0.0);
-  at = std::min(at, high - 1);
-  if (clears(value(at))) {
-    low = at;
-    for (std::uint64_t step = 1; high - low > step; step *= 2) {
-      if (!clears(value(low + step))) {
-        high = low + step;
-        break;
-      }
-      low += step;
-    }
-  } else {
-    high = at;
-    for (std::uint64_t step = 1; high - low > step; step *= 2) {
-      if (clears(value(high - step))) {
-        low = high - step;
-        break;
-      }
-      high -= step;
-    }
-  }
-  while (high - low > 1) {
-    const std::uint64_t middle = low + (high - low) / 2;
-    (clears(value(middle)) ? low : high) = middle;
-  }
-  return value(low);
-}
-
 template <class Clears>
 double exact_path(const Motion& m, const Clears& clears, double guess) {
   const double limit = std::min(m.limit, largest_double);
@@ -276,7 +241,7 @@ double plain_free_path(const Facet& f, const Motion& m) {
   return t == limit ? m.limit : std::min(t / length, m.limit);
 }
 
-/// Of a ball that is to keep away from the wall of a triangle the one that keeps away from the triangle.
+/// Of a ball that is to keep away from the wall of a piece the one that keeps away from the piece.
 Motion around_inset(const Facet& f, Motion motion) {
   motion.r = std::max(0.0, sum_rounded_up(motion.r, f.radius));
   return motion;
@@ -287,6 +252,7 @@ Motion around_inset(const Facet& f, Motion motion) {
 double lengths_of(const Facet& f, const Motion& m) {
   double coordinate = std::max(m.c.cwiseAbs().maxCoeff(), f.a.cwiseAbs().maxCoeff());
   double distance = (m.c - f.a).norm();
+  if (f.kind == Facet::Kind::frustum) distance += f.c.cwiseAbs().sum();
   if (f.kind == Facet::Kind::triangle)
     for (const Vector<3>* corner : {&f.b, &f.c}) {
       coordinate = std::max(coordinate, corner->cwiseAbs().maxCoeff());
@@ -319,10 +285,18 @@ double free_path(std::span<const AnalyticWall> walls, const Motion& motion, Wall
 double free_path(const Facet& f, const Motion& motion, WallArithmetic arithmetic) {
   if (f.kind == Facet::Kind::triangle)
     return free_path(Corners{f.a, f.b, f.c}, around_inset(f, motion), arithmetic);
+  if (f.kind == Facet::Kind::frustum) {
+    if (arithmetic == WallArithmetic::plain) return plain_free_path(f, motion);
+    return free_path(edge_of(f), around_inset(f, motion), arithmetic);
+  }
   return free_path(wall_of(f), motion, arithmetic);
 }
 
 long double gap_after(const Facet& f, const Motion& m, long double t) {
+  if (f.kind == Facet::Kind::frustum) {
+    const Motion around = around_inset(f, m);
+    return FrustumWay(edge_of(f), around.c, around.direction).distance(t) - around.r;
+  }
   if (f.kind != Facet::Kind::triangle) return gap_after(wall_of(f), m, t);
   const WideWay way({f.a, f.b, f.c}, around_inset(f, m));
   return nearest_of_triangle(ways_from(way.from_start, way.direction, t)).offset.norm() - way.r;
@@ -342,7 +316,8 @@ double clear_radius(const Container& container, const Vector<3>& c, double reach
 }
 
 double first_contact_exactly(const Facet& f, const Motion& of, double skin) {
-  const Motion m = f.kind == Facet::Kind::triangle ? around_inset(f, of) : of;
+  const Motion m = has_border(f.kind) ? around_inset(f, of) : of;
+  if (f.kind == Facet::Kind::frustum) return first_contact_exactly(edge_of(f), m, skin);
   const double stop = m.r + skin, ignore = m.r + 0.5 * skin;
   if (f.kind == Facet::Kind::triangle) {
     const Corners corners{f.a, f.b, f.c};

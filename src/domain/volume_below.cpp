@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "domain/ball_below.hpp"
+#include "domain/revolved_surface.hpp"
 #include "domain/share_of_area.hpp"
 
 namespace bernal {
@@ -92,6 +93,13 @@ void VolumeBelow::add(const Cylinder& cylinder) {
 void VolumeBelow::add(const Mesh& mesh) {
   for (const auto& [i, j, k] : mesh.triangles)
     add_triangle(mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]);
+}
+
+void VolumeBelow::add(const Revolved& shape) {
+  constexpr std::size_t most_sides = 1024, fewest_sides = 64, most_triangles = 32768;
+  const std::size_t sides =
+      std::clamp(most_triangles / std::max<std::size_t>(1, shape.profile.size()), fewest_sides, most_sides);
+  add(surface_of(shape, static_cast<int>(sides), RoundAs::of_same_area));
 }
 
 /// As a plate of unit thickness. Of a line that may run either way, the area that it encloses tells the sign.

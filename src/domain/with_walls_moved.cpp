@@ -53,6 +53,7 @@ struct WithWallsMoved {
 
   Domain operator()(Mesh mesh) const { return with_inset(std::move(mesh)); }
   Domain operator()(Polygon polygon) const { return with_inset(std::move(polygon)); }
+  Domain operator()(Revolved revolved) const { return with_inset(std::move(revolved)); }
 
  private:
   template <class Faceted>

@@ -31,6 +31,9 @@ struct Refusal {
 std::string lack_of_walls(const SceneEngine& engine, const Domain& domain) {
   const bool is_lammps = std::holds_alternative<Lammps>(engine);
   if (std::holds_alternative<Polygon>(domain)) return "engines pack spheres, no discs; leave [engine] out";
+  if (std::holds_alternative<Revolved>(domain))
+    return "engines have no walls of a solid of revolution: leave [engine] out, or give the container to "
+           "kind = \"liggghts\" as a mesh";
   if (is_lammps && std::holds_alternative<Mesh>(domain))
     return "LAMMPS has no walls of triangles; kind = \"liggghts\" has";
   if (is_lammps) return {};

@@ -40,6 +40,7 @@ struct LammpsWalls {
   }
   std::string operator()(const Mesh&) const { return {}; }
   std::string operator()(const Polygon&) const { return {}; }
+  std::string operator()(const Revolved&) const { return {}; }
 
   static std::string around() {
     return fmt::format("fix walls all wall/gran/region {} region inside\n", wall);

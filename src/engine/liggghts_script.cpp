@@ -55,6 +55,7 @@ struct LiggghtsWalls {
         walls_name, type, wall_of(task));
   }
   std::string operator()(const Polygon&) const { return {}; }
+  std::string operator()(const Revolved&) const { return {}; }
 };
 
 /// A number for each pair of types, the walls' being the last.

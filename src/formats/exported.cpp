@@ -45,6 +45,12 @@ struct MappedDomain {
     mesh.exact = nullptr;
     return mesh;
   }
+  Domain operator()(Revolved revolved) const {
+    revolved.base = point(revolved.base);
+    for (Vector<2>& p : revolved.profile)
+      p = {mapping.length(p[0]), std::copysign(mapping.length(std::abs(p[1])), p[1])};
+    return revolved;
+  }
   Domain operator()(Polygon polygon) const {
     for (auto& loop : polygon.loops)
       for (Vector<2>& p : loop) p = point(p);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "domain/revolved_surface.hpp"
 #include "formats/format.hpp"
 #include "formats/templates.hpp"
 #include "measure/touching.hpp"
@@ -113,6 +114,10 @@ struct PythonDomain {
     for (const FlatFace& face : flat_faces_of(mesh, 1e-9 * bounds_of(Domain(mesh)).diagonal()))
       polygons += fmt::format("    {},\n", face.loops);
     return fmt::format("(\"Polyhedron\", [\n{}], [\n{}])", corners, polygons);
+  }
+  std::string operator()(const Revolved& revolved) const {
+    constexpr int sides = 96;  // each of which gmsh makes a surface of
+    return (*this)(surface_of(revolved, sides, RoundAs::circumscribed));
   }
   std::string operator()(const Polygon&) const { return "()"; }
 };

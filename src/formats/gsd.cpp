@@ -143,12 +143,14 @@ class GsdFile {
   explicit GsdFile(const Reading& reading) : reading_(reading), in_(reading.file, std::ios::binary) {
     std::error_code problem;
     size_ = std::filesystem::file_size(reading.file, problem);
-    if (!in_ || problem) fail("cannot be read");
-    if (get<std::uint64_t>(0) != gsd_magic) fail("is no GSD file");
+    if (!in_ || problem) fail("cannot be read; may its owner and its folder be read?");
+    if (get<std::uint64_t>(0) != gsd_magic)
+      fail("is no GSD file; name the one that HOOMD wrote, or give ‹format›");
     header_ = get<GsdHeader>(0);
     const std::uint32_t version = header_.file_version >> 16U;
     if (version != 1 && version != 2)
-      fail(fmt::format("is a GSD file of version {}, and 1 and 2 are known", version));
+      fail(fmt::format("is a GSD file of version {}, and 1 and 2 are known; write it again with gsd.hoomd",
+                       version));
     if (text_in(header_.schema) != "hoomd")
       fail("is a GSD file whose schema is not hoomd; write it with gsd.hoomd");
     read_names(version == 1);
@@ -169,7 +171,7 @@ class GsdFile {
   /// Numbers of single or double precision, with this many columns a row.
   std::vector<double> numbers(const GsdEntry& entry, std::uint32_t columns, std::string_view name) {
     if (entry.columns != columns || (entry.type != float32 && entry.type != float64))
-      fail(fmt::format("has no numbers of {} columns for {}", columns, name));
+      fail(fmt::format("has no numbers of {} columns for {}; write it again with gsd.hoomd", columns, name));
     const auto at = static_cast<std::uint64_t>(entry.location);
     if (entry.rows > size_) fail(fmt::format("has more {} than bytes; was it changed?", name));
     const std::uint64_t count = entry.rows * columns;
@@ -192,7 +194,7 @@ class GsdFile {
     std::vector<T> values(count);
     in_.seekg(static_cast<std::streamoff>(at));
     in_.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count * sizeof(T)));
-    if (!in_) fail("cannot be read to its end");
+    if (!in_) fail("cannot be read to its end; copy it again");
     return values;
   }
   static std::string text_in(const char (&bytes)[64]) { return {bytes, strnlen(bytes, sizeof bytes)}; }
@@ -235,7 +237,8 @@ FileBox box_of_frame(GsdFile& gsd, const Reading& reading, int frame, bool is_fl
   std::vector<double> six = {1, 1, 1, 0, 0, 0};  // the schema's default
   if (const GsdEntry* entry = gsd.chunk(box_chunk, frame)) {
     six = gsd.numbers(*entry, 1, box_chunk);
-    if (six.size() != 6) gsd.fail("has no six numbers for its box");
+    if (six.size() != 6)
+      gsd.fail("has no six numbers for its box; write Lx, Ly, Lz, xy, xz, yz with gsd.hoomd");
   }
   if (six[3] != 0 || (!is_flat && (six[4] != 0 || six[5] != 0))) refuse_skewed(reading);
   FileBox box = FileBox::of_three(AxisEnd::unsaid);
@@ -248,13 +251,15 @@ FileBox box_of_frame(GsdFile& gsd, const Reading& reading, int frame, bool is_fl
 
 FileContents read_gsd(const Reading& reading) {
   GsdFile gsd(reading);
-  if (gsd.frames() == 0) gsd.fail("there are no spheres in it");
+  if (gsd.frames() == 0)
+    gsd.fail("there are no spheres in it; name a file, or a ‹frame›, that has particles");
   const int wanted = frame_of(reading, gsd.frames()), frame = wanted - 1;
   FileContents contents;
   take_unit_of_remark(gsd.application(), contents.unit, {reading.file.string()});
   if (const GsdEntry* entry = gsd.chunk(dimensions_chunk, frame)) {
     const int dimensions = entry->type != uint8 ? 0 : gsd.get<std::uint8_t>(entry->location);
-    if (dimensions != 2 && dimensions != 3) gsd.fail("has neither two nor three dimensions");
+    if (dimensions != 2 && dimensions != 3)
+      gsd.fail("has neither two nor three dimensions; write 2 or 3 with gsd.hoomd");
     contents.is_flat = dimensions == 2;
   }
   contents.box = box_of_frame(gsd, reading, frame, contents.is_flat);
@@ -263,11 +268,13 @@ FileContents read_gsd(const Reading& reading) {
   if (const GsdEntry* entry = gsd.chunk(count_chunk, frame); entry && entry->type == uint32)
     count = gsd.get<std::uint32_t>(entry->location);
   const GsdEntry* position = gsd.chunk(position_chunk, frame);
-  if (count == 0 || !position) gsd.fail("there are no spheres in it");
+  if (count == 0 || !position)
+    gsd.fail("there are no spheres in it; name a file, or a ‹frame›, that has particles");
   const std::vector<double> centers = gsd.numbers(*position, 3, position_chunk);
   if (centers.size() != 3 * count)
     gsd.fail(
-        fmt::format("says that it has {} particles, and has positions of {}", count, centers.size() / 3));
+        fmt::format("says that it has {} particles, and has positions of {}; write it again with gsd.hoomd",
+                    count, centers.size() / 3));
   contents.note = fmt::format("frame {} of {}", wanted, gsd.frames());
   NumberTable table;
   table.add(centers, 3, "position");
@@ -277,7 +284,8 @@ FileContents read_gsd(const Reading& reading) {
     diameters = gsd.numbers(*entry, 1, diameter_chunk);
     if (diameters.size() != count)
       gsd.fail(
-          fmt::format("says that it has {} particles, and has diameters of {}", count, diameters.size()));
+          fmt::format("says that it has {} particles, and has diameters of {}; write it again with gsd.hoomd",
+                      count, diameters.size()));
   } else if (!reading.has_size()) {  // writers omit what equals the schema's default
     diameters.assign(count, default_diameter);
     contents.note += fmt::format(

@@ -61,12 +61,14 @@ void require_script_word(const void* options, const schema::Section& section) {
 constexpr double wall_deflection_of_spheres = 0.01;
 
 /// The walls as triangles, if LIGGGHTS has no primitive for them: those of a part, or of a polyhedron around
-/// a sphere or an oblique cylinder.
+/// a sphere, an oblique cylinder or a solid of revolution.
 std::optional<Mesh> walls_as_triangles(const Exported& file) {
   if (const auto* mesh = std::get_if<Mesh>(&file.domain)) return *mesh;
   const auto* cylinder = std::get_if<Cylinder>(&file.domain);
   const bool is_oblique = cylinder && cylinder->coordinate_axis() < 0;
-  if (!is_oblique && !std::holds_alternative<Sphere>(file.domain)) return std::nullopt;
+  if (!is_oblique && !std::holds_alternative<Sphere>(file.domain) &&
+      !std::holds_alternative<Revolved>(file.domain))
+    return std::nullopt;
   const FloatSurface surface =
       wall_surface(file.domain, wall_deflection_of_spheres * file.largest_radius()).closed();
   Mesh walls{.vertices = {}, .triangles = surface.triangles};
@@ -101,6 +103,7 @@ struct WallLines {
   }
   std::string operator()(const Sphere&) const { return surface(); }
   std::string operator()(const Mesh&) const { return surface(); }
+  std::string operator()(const Revolved&) const { return surface(); }
   std::string surface() const {
     return fmt::format(
         "fix surface all mesh/surface file {} type 1\n"

@@ -62,6 +62,7 @@ struct RegionLines {
   }
   std::string operator()(const Mesh&) const { return bounds(); }
   std::string operator()(const Polygon&) const { return bounds(); }
+  std::string operator()(const Revolved&) const { return bounds(); }
 };
 
 std::string script_text(const Exported& file, const std::string& radii) {

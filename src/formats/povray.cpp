@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "domain/revolved_surface.hpp"
 #include "formats/foreign_lines.hpp"
 #include "formats/templates.hpp"
 #include "formats/text_file.hpp"
@@ -63,6 +64,10 @@ struct OutlineLines {
     lines += fmt::format(" }}\nface_indices {{ {}", mesh.triangles.size());
     for (const auto& [a, b, c] : mesh.triangles) lines += fmt::format(",\n<{}, {}, {}>", a, b, c);
     return lines + fmt::format(" }}\n{}\n}}\n", glass);
+  }
+  std::string operator()(const Revolved& revolved) const {
+    constexpr int sides = 180;
+    return (*this)(surface_of(revolved, sides));
   }
   std::string operator()(const Polygon&) const { return {}; }
 };

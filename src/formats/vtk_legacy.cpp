@@ -57,7 +57,8 @@ class LegacyText {
   std::uint64_t whole(std::string_view word) const {
     const std::optional<std::uint64_t> value = whole_number(word);
     if (!value || *value > most_numbers)
-      fail(fmt::format("{} is not a number of points, cells or components", bernal::quoted(word)));
+      fail(fmt::format("{} is not a number of points, cells or components; save the file again with ParaView",
+                       bernal::quoted(word)));
     return *value;
   }
   [[noreturn]] void fail(const std::string& why) const {
@@ -127,11 +128,12 @@ class LegacyReader {
     points_.remarks = in_.line();
     const auto kind = in_.words_of_line();
     const std::string encoding = kind.size() == 1 ? in_capitals(kind[0]) : std::string();
-    if (encoding != "ASCII" && encoding != "BINARY") in_.fail("the third line has to be ASCII or BINARY");
+    if (encoding != "ASCII" && encoding != "BINARY")
+      in_.fail("the third line has to be ASCII or BINARY; put that word there, or save the file again");
     is_binary_ = encoding == "BINARY";
     const auto set = in_.words_of_line();
     if (set.size() != 2 || in_capitals(set[0]) != "DATASET")
-      in_.fail("the line DATASET POLYDATA is expected here");
+      in_.fail("the line DATASET POLYDATA is expected here; put it there, or save the file again");
     const std::string of = in_capitals(set[1]);
     if (of != "POLYDATA" && of != "UNSTRUCTURED_GRID")
       in_.fail(fmt::format("a VTK {} has no spheres; save points with radii as POLYDATA or UNSTRUCTURED_GRID",
@@ -174,7 +176,8 @@ class LegacyReader {
       if (word.empty())
         in_.fail(fmt::format("the file ends after {} of {} numbers; was it cut off?", k, count));
       const std::optional<double> value = number_in_text(word);
-      if (!value) in_.fail(fmt::format("{} is not a number", bernal::quoted(word)));
+      if (!value)
+        in_.fail(fmt::format("{} is not a number; correct it, or save the file again", bernal::quoted(word)));
       values.push_back(*value);
     }
     return values;
@@ -195,8 +198,10 @@ class LegacyReader {
       return;
     }
     if (section_ == Section::none)
-      in_.fail(
-          fmt::format("{} is not understood; it is no part of a VTK file of points", bernal::quoted(word)));
+      in_.fail(fmt::format(
+          "{} is not understood; it is no part of a VTK file of points: take it out, or save the file "
+          "again with ParaView",
+          bernal::quoted(word)));
     take_attribute(words);
   }
 
@@ -222,7 +227,8 @@ class LegacyReader {
       const auto part = in_.words_of_line();
       const std::string what = part.size() == 2 ? in_capitals(part[0]) : std::string();
       if (what != "OFFSETS" && what != "CONNECTIVITY")
-        in_.fail(fmt::format("OFFSETS and CONNECTIVITY are expected after {}", word));
+        in_.fail(fmt::format(
+            "OFFSETS and CONNECTIVITY are expected after {}; save the file again with ParaView", word));
       numbers(std::string(part[1]), count, 1);
     }
   }
@@ -259,8 +265,9 @@ class LegacyReader {
         continue;
       }
       if (section_ == Section::points && rows != rows_)
-        in_.fail(fmt::format("the array {} has {} rows, and there are {} points", bernal::quoted(name), rows,
-                             rows_));
+        in_.fail(fmt::format(
+            "the array {} has {} rows, and there are {} points; take it out, or save the file again",
+            bernal::quoted(name), rows, rows_));
       add(name, components, numbers(type, rows, components));
     }
   }
@@ -272,7 +279,8 @@ class LegacyReader {
       const std::uint64_t components = words.size() > 3 ? in_.whole(words[3]) : 1;
       const auto table = in_.words_of_line();
       if (table.size() != 2 || in_capitals(table[0]) != "LOOKUP_TABLE")
-        in_.fail(fmt::format("the line LOOKUP_TABLE is expected after SCALARS {}", name));
+        in_.fail(fmt::format(
+            "the line LOOKUP_TABLE is expected after SCALARS {}; put \"LOOKUP_TABLE default\" there", name));
       return add(name, components, numbers(last, rows_, components));
     }
     if (word == "VECTORS" || word == "NORMALS") return add(name, 3, numbers(last, rows_, 3));

@@ -45,11 +45,13 @@ class XmlReader {
   VtkPoints read() {
     parse();
     const pugi::xml_node root = document_.child("VTKFile");
-    if (!root) fail_at({}, "is XML, but no VTK file");
+    if (!root) fail_at({}, "is XML, but no VTK file; save the spheres as .vtp or .vtu");
     take_root(root);
     const std::string type = root.attribute("type").value();
     const pugi::xml_node set = root.child(type.c_str());
-    if (!set) fail_at(root, fmt::format("there is no element {} in it", bernal::quoted(type)));
+    if (!set)
+      fail_at(root, fmt::format("there is no element {} in it; save the file again with ParaView",
+                                bernal::quoted(type)));
     points_.kind = type;
     remarks_of(document_);
     remarks_of(root);
@@ -90,11 +92,11 @@ class XmlReader {
     const std::string_view order = root.attribute("byte_order").as_string("LittleEndian");
     if (order != "LittleEndian" && order != "BigEndian")
       fail_at(root,
-              fmt::format("byte_order is {}; LittleEndian and BigEndian are known", bernal::quoted(order)));
+              fmt::format("byte_order is {}; write LittleEndian or BigEndian there", bernal::quoted(order)));
     is_swapped_ = order == "BigEndian";
     const std::string_view header = root.attribute("header_type").as_string("UInt32");
     if (header != "UInt32" && header != "UInt64")
-      fail_at(root, fmt::format("header_type is {}; UInt32 and UInt64 are known", bernal::quoted(header)));
+      fail_at(root, fmt::format("header_type is {}; write UInt32 or UInt64 there", bernal::quoted(header)));
     header_ = {'u', header == "UInt64" ? 8 : 4, is_swapped_};
     const std::string_view compressor = root.attribute("compressor").value();
     if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
@@ -105,7 +107,7 @@ class XmlReader {
     const pugi::xml_node appended = root.child("AppendedData");
     const std::string_view encoding = appended.attribute("encoding").as_string("raw");
     if (encoding != "raw" && encoding != "base64")
-      fail_at(appended, fmt::format("the encoding of the appended data is {}; raw and base64 are known",
+      fail_at(appended, fmt::format("the encoding of the appended data is {}; save them as raw or base64",
                                     bernal::quoted(encoding)));
     is_appended_base64_ = encoding == "base64";
   }
@@ -131,9 +133,9 @@ class XmlReader {
       }
     }
     const pugi::xml_node places = piece.child("Points").child("DataArray");
-    if (!places) fail_at(piece, "there are no Points in this piece");
+    if (!places) fail_at(piece, "there are no Points in this piece; save the file again with ParaView");
     if (whole(places, "NumberOfComponents", 3, most_components) != 3)
-      fail_at(places, "Points need three components");
+      fail_at(places, "Points need three components; write z = 0 in the plane");
     const std::vector<double> own = values_of(places, rows, 3);
     const std::uint64_t before = points_.size();
     points_.places.insert(points_.places.end(), own.begin(), own.end());
@@ -297,12 +299,13 @@ class XmlReader {
     throw Error(ErrorCode::bad_packing, why, {file_, node ? line_at(node.offset_debug()) : 0});
   }
   [[noreturn]] void refuse_cut(const pugi::xml_node& node) const {
-    fail_at(node, "the data of this array are cut off or damaged");
+    fail_at(node, "the data of this array are cut off or damaged; copy or save the file again");
   }
   [[noreturn]] void refuse_length(const pugi::xml_node& node, std::uint64_t said,
                                   std::uint64_t expected) const {
-    fail_at(node,
-            fmt::format("this array says that it has {} bytes, and so many points need {}", said, expected));
+    fail_at(node, fmt::format(
+                      "this array says that it has {} bytes, and so many points need {}; save the file again",
+                      said, expected));
   }
 
   std::string_view text_, appended_;

@@ -27,7 +27,7 @@ std::optional<FileBox> cell_in(const ForeignLines& lines) {
   const std::string_view inside = lines.line().substr(at + cell_mark.size());
   std::vector<std::string_view> edges;
   split_at(inside.substr(0, inside.find(')')), ", ", edges);
-  if (edges.size() != 3) lines.fail("O.cell.setBox needs three edges");
+  if (edges.size() != 3) lines.fail("O.cell.setBox needs three edges; write all three");
   FileBox box = FileBox::of_three(AxisEnd::period);
   for (std::size_t k = 0; k < 3; ++k) box.upper[k] = lines.number(edges[k], "edge");
   return box;
@@ -52,7 +52,8 @@ FileContents read_yade(const Reading& reading) {
     if (line.starts_with('#')) {
       lines.take_unit_remark(contents.unit);
       if (auto box = cell_in(lines)) {
-        if (contents.box && contents.box->upper != box->upper) lines.fail("a second cell, and another one");
+        if (contents.box && contents.box->upper != box->upper)
+          lines.fail("a second cell, other than the first; leave one of them in the file");
         contents.box = std::move(box);
       }
       split_at(line, " \t,", row);

@@ -178,6 +178,11 @@ struct WallsOf {
     for (Wall<3>& wall : walls) wall.extent -= mesh.inset;
     return walls;
   }
+  std::vector<Wall<3>> operator()(const Revolved&) const {
+    throw Error(ErrorCode::bad_scene,
+                "\"grow\" packs convex containers of planes, cylinders and spheres, and no solid of "
+                "revolution; \"relax\" packs any");
+  }
   std::vector<Wall<3>> operator()(const Polygon&) const {
     throw Error(ErrorCode::bad_argument, "a polygon lies in the plane and has no walls of three dimensions");
   }

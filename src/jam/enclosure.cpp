@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include "core/every_dimension.hpp"
 
 namespace bernal {
@@ -18,6 +20,7 @@ constexpr double same_distance = 1e-12;
 WallView<3> view_of_facet(const Facet& facet, const Vector<3>& p) {
   const double d = distance(facet, p);
   if (facet.kind == Facet::Kind::plane) return {facet.b, d};
+  if (facet.kind == Facet::Kind::frustum) return {(p - closest_point(facet, p)).stableNormalized(), d};
   Vector<3> inward = facet.a - p;
   if (facet.kind == Facet::Kind::cylinder) inward -= inward.dot(facet.b) * facet.b;
   return {inward.stableNormalized(), d};
@@ -27,9 +30,33 @@ Eigen::Matrix3d across(const Vector<3>& normal) {
   return Eigen::Matrix3d::Identity() - normal * normal.transpose();
 }
 
+/// About the axis the distance d from a frustum bends as that from it, r: by n_r / r across the half plane in
+/// which r and the nearest point lie. In that half plane it does not, unless the nearest point is an end of
+/// the edge; there it bends as that from a point.
+Eigen::Matrix3d bend_of_frustum(const Facet& facet, const Vector<3>& p, const WallView<3>& view) {
+  Vector<3> outward = p - facet.a;
+  const double z = outward.dot(facet.b);
+  outward -= z * facet.b;
+  const double r = outward.norm();
+  Eigen::Matrix3d bend = Eigen::Matrix3d::Zero();
+  const double distance = view.distance + facet.radius;
+  if (!(r > 0) || !(distance > 0)) return bend;
+  outward /= r;
+  const Vector<3> around = facet.b.cross(outward);
+  bend += view.normal.dot(outward) / r * around * around.transpose();
+  const Vector<2> from(facet.c[0], 0), to(facet.c[1], facet.c[2]), e = to - from, w = Vector<2>(r, z) - from;
+  const double along = w.dot(e);
+  if (along < 0 || along > e.squaredNorm()) {
+    const Vector<3> turned = around.cross(view.normal);
+    bend += turned * turned.transpose() / distance;
+  }
+  return view.distance * bend;
+}
+
 /// Of a round wall the distance falls as the distance from its axis or centre, R - d, grows.
-Eigen::Matrix3d bend_of_facet(const Facet& facet, const WallView<3>& view) {
+Eigen::Matrix3d bend_of_facet(const Facet& facet, const Vector<3>& p, const WallView<3>& view) {
   if (facet.kind == Facet::Kind::plane) return Eigen::Matrix3d::Zero();
+  if (facet.kind == Facet::Kind::frustum) return bend_of_frustum(facet, p, view);
   Eigen::Matrix3d bend = across(view.normal);
   if (facet.kind == Facet::Kind::cylinder) bend -= facet.b * facet.b.transpose();
   const double from_middle = facet.radius - view.distance;
@@ -109,7 +136,7 @@ WallView<D> view_of(const WallPiece<D>& piece, const Vector<D>& p) {
 template <int D>
 Eigen::Matrix<double, D, D> bend_of(const WallPiece<D>& piece, const Vector<D>& p, const WallView<D>& view) {
   if constexpr (D == 3) {
-    if (const auto* facet = std::get_if<Facet>(&piece)) return bend_of_facet(*facet, view);
+    if (const auto* facet = std::get_if<Facet>(&piece)) return bend_of_facet(*facet, p, view);
     if (const auto* triangle = std::get_if<TriangleWall>(&piece)) return bend_of_triangle(*triangle, p, view);
   }
   return Eigen::Matrix<double, D, D>::Zero();

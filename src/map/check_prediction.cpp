@@ -45,6 +45,7 @@ Scene scene_to_check(const SceneSizes& sizes, bool sizes_are_diameters, const Ch
   scene.sizes = sizes;
   scene.sizes_are_diameters = sizes_are_diameters;
   scene.draw = Draw::quantiles;
+  if (auto* list = std::get_if<ListedSizes>(&scene.sizes)) list->draw = ListedSizes::Draw::resample;
   scene.seed = options.seed;
   scene.target.count = options.spheres == 0 ? spheres_for(*radii_of(scene)) : options.spheres;
   scene.stages = {options.stage};

@@ -12,6 +12,7 @@
 #include "measure/bed_surface.hpp"
 #include "measure/even_points.hpp"
 #include "measure/localised.hpp"
+#include "measure/slices.hpp"
 
 namespace bernal {
 namespace {
@@ -105,32 +106,13 @@ Volume below_surface(const BedInFrame& all, const BedSurface& surface, double me
   return {all.below(mean) + one * (more - less), one * std::sqrt(more + less)};
 }
 
-/// The volume of the spheres in each of equal layers from `from` on.
-std::vector<double> slices(const BedInFrame& all, double from, double thickness, std::size_t layers) {
-  std::vector<double> filled(layers, 0);
-  for (std::size_t i = 0; i < all.spheres.size(); ++i) {
-    const double r = all.spheres.r[i], z = all.height(i) - from;
-    const auto layer = [&](double at) {
-      return static_cast<std::size_t>(std::clamp(at / thickness, 0.0, static_cast<double>(layers - 1)));
-    };
-    double before = 0;
-    const std::size_t last = layer(z + r);
-    for (std::size_t k = layer(z - r); k <= last; ++k) {
-      const double top = k == last ? z + r : static_cast<double>(k + 1) * thickness;
-      const double below = ball_below(all.container.dimension(), r, top - z);
-      filled[k] += below - before;
-      before = below;
-    }
-  }
-  return filled;
-}
-
 std::vector<BedProfile::Layer> layers_of(const BedInFrame& all, const BedOptions& options) {
   const double lowest = all.below.lowest(), deep = all.highest() - lowest;
   const double wanted = std::ceil(deep / (options.layer * all.diameter) - rounding_of_layers);
   const auto n = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(options.most_layers)));
   const double thickness = deep / static_cast<double>(n);
-  const std::vector<double> filled = slices(all, lowest, thickness, n);
+  const std::vector<double> filled =
+      filled_slices(all.spheres, all.container.dimension(), -all.down, lowest, thickness, n);
   std::vector<double> below(n + 1, 0);
   parallel_for(
       n, [&](std::size_t k) { below[k + 1] = all.below(lowest + static_cast<double>(k + 1) * thickness); });

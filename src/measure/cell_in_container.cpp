@@ -2,15 +2,33 @@
 
 #include <algorithm>
 
+#include "bernal/cad/mesh_container.hpp"
+#include "domain/revolved_surface.hpp"
 #include "measure/round_walls.hpp"
 
 namespace bernal {
 
-static_assert(std::variant_size_v<Domain> == 5, "trim and volume below need the walls of the new container");
+static_assert(std::variant_size_v<Domain> == 6, "trim and volume below need the walls of the new container");
+
+namespace {
+
+/// Of a solid of revolution: off by 1e-4 of its radius.
+constexpr int sides_around = 256;
+
+Domain flat_sided(const Domain& domain) {
+  const auto* revolved = std::get_if<Revolved>(&domain);
+  return revolved ? Domain(surface_of(*revolved, sides_around, RoundAs::of_same_area)) : domain;
+}
+
+}  // namespace
 
 CellInContainer::CellInContainer(const Domain& domain, const Container& container)
-    : domain_(domain), container_(container) {
-  if (is_faceted(domain)) polygons_.emplace(domain, container);
+    : domain_(domain),
+      flat_sided_(std::holds_alternative<Revolved>(domain)
+                      ? make_container(flat_sided(domain), WallArithmetic::plain, container.resolution())
+                      : nullptr),
+      container_(flat_sided_ ? *flat_sided_ : container) {
+  if (is_faceted(domain)) polygons_.emplace(flat_sided(domain), container_);
 }
 
 void CellInContainer::trim(ConvexCell& cell, const Vector<3>& center) const {

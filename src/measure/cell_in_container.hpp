@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <optional>
 
 #include "bernal/domain/container.hpp"
@@ -9,7 +10,8 @@ namespace bernal {
 
 /// The volume of a cell inside a container of two or three dimensions, to rounding: between round walls in
 /// closed form, see `volume_inside`; in a mesh or polygon a cell inside a ball that lies in the container
-/// counts whole, and any other is cut along the walls, see `WallPolygons`.
+/// counts whole, and any other is cut along the walls, see `WallPolygons`; a solid of revolution is taken for
+/// one with many flat sides there, of the same volume.
 class CellInContainer {
  public:
   /// The domain is the one that the container was made from; both must outlive this. Precondition: no box and
@@ -27,6 +29,7 @@ class CellInContainer {
   double volume_between_facets(const ConvexCell& cell, const Vector<3>& center) const;
 
   const Domain& domain_;
+  std::unique_ptr<const Container> flat_sided_;  ///< in place of a solid of revolution
   const Container& container_;
   std::optional<WallPolygons> polygons_;
 };

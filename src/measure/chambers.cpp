@@ -42,12 +42,13 @@ class Components {
     const Bounds<3> bounds = space.container().bounds();
     const auto* mesh = std::get_if<Mesh>(&shape);
     if (mesh && is_convex(*mesh)) deepest_ = deepest_of_coarse_cells(space, bounds.size().maxCoeff());
-    if (mesh && deepest_.empty()) {
+    const bool is_faceted_or_bent = mesh || std::holds_alternative<Revolved>(shape);
+    if (is_faceted_or_bent && deepest_.empty()) {
       edge_ = std::max(space.radius() / cells_per_radius, bounds.size().maxCoeff() / cells);
       edge_ = std::min(edge_, bounds.size().maxCoeff());
       cells_.emplace(space, edge_);
       for (std::size_t k = 0; k < cells_->components(); ++k) deepest_.push_back(cells_->deepest(k));
-    } else if (!mesh) {
+    } else if (!is_faceted_or_bent) {
       const Place center = {bounds.center(), space.container().clearance(bounds.center())};
       if (space.is_place(center.clearance)) deepest_.push_back(center);
     }

@@ -32,6 +32,7 @@ double inner_volume(const Sphere& sphere, double z) { return std::pow(std::max(0
 /// Containers of facets are sampled.
 double inner_volume(const Mesh&, double) { return 0; }
 double inner_volume(const Polygon&, double) { return 0; }
+double inner_volume(const Revolved&, double) { return 0; }
 
 double deepest_of(const Box& box) {
   const Vector<3> size = bounds_of(box).size();
@@ -46,6 +47,7 @@ double deepest_of(const Cylinder& cylinder) {
 double deepest_of(const Sphere& sphere) { return sphere.radius; }
 double deepest_of(const Mesh&) { return 0; }
 double deepest_of(const Polygon&) { return 0; }
+double deepest_of(const Revolved&) { return 0; }
 
 /// The number of cells along each axis of a grid of about `wanted` roughly cubic cells over the bounds; a
 /// single layer or row where the bounds are thinner than a cube.
@@ -96,13 +98,18 @@ std::vector<double> sample(const Container& container, double reach, std::size_t
   return depths;
 }
 
+double volume_in(const Domain& shape, const LowerPart& part) {
+  const VolumeBelow below(shape, part.direction);
+  return below(part.height) - (part.from > below.lowest() ? below(part.from) : 0);
+}
+
 }  // namespace
 
 Depths::Depths(const Domain& shape, const Container& container, double reach, std::size_t points,
                const std::optional<LowerPart>& below)
     : below_(below),
-      volume_(below ? VolumeBelow(shape, below->direction)(below->height) : container.volume()) {
-  if (std::holds_alternative<Mesh>(shape)) {
+      volume_(below ? volume_in(shape, *below) : container.volume()) {
+  if (std::holds_alternative<Mesh>(shape) || std::holds_alternative<Revolved>(shape)) {
     shape_ = Mesh{};
     sampled_ = sample(container, reach, points, below, volume_);
     deepest_ = sampled_.empty() ? 0 : sampled_.back();
@@ -129,7 +136,7 @@ double Depths::inner_share(double z) const {
   const double whole =
       std::visit([z](const auto& s) { return inner_volume(s, z) / inner_volume(s, 0); }, shape_);
   if (!below_ || !(whole > 0)) return whole;
-  const double part = VolumeBelow(with_walls_moved(shape_, z), below_->direction)(below_->height) / volume_;
+  const double part = volume_in(with_walls_moved(shape_, z), *below_) / volume_;
   return part > rounding_of_shares ? part : 0;
 }
 

@@ -78,19 +78,26 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   measured.held_from = smallest_holding_gap(measured.by_gap, spheres.size());
   measured.contacts = measured.by_gap.back();
   measured.by_gap.pop_back();
+  measured.of_contacts =
+      contact_sums(spheres, domain, {options.contact_gap, options.gap, options.wall_gap, container});
   try {
     const Interruptible listening(options.monitor);
-    measured.radial = radial_distribution(spheres, domain, options.radial);
     measured.size_correlation = size_correlation(spheres, domain, options.size_correlation);
     measured.chambers = chambers(spheres, domain, options.chambers, container);
     BedOptions bed = options.bed;
     bed.gap = options.gap;
     bed.wall_gap = options.wall_gap;
     measured.bed = bed_profile(spheres, domain, bed, container);
+    RadialOptions radial = options.radial;
+    if (measured.bed) radial.below = measured.bed->below_level();
+    measured.radial = radial_distribution(spheres, domain, radial, container);
     WallOptions walls = options.walls;
     PoreOptions pores = options.pores;
     if (measured.bed) walls.below = pores.below = measured.bed->below_level();
     measured.walls = wall_profile(spheres, domain, walls, container);
+    ColumnOptions column{.down = options.bed.direction, .side = options.walls};
+    if (measured.bed) column.level = measured.bed->level;
+    measured.column = column_profile(spheres, domain, column);
     measured.order =
         bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
     measured.local = local_packing(spheres, domain, options.local, container);

@@ -4,7 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
+#include "bernal/core/random.hpp"
+#include "core/parallel.hpp"
+#include "measure/depths.hpp"
+#include "measure/localised.hpp"
 #include "measure/pair_distances.hpp"
 
 namespace bernal {
@@ -46,11 +51,14 @@ void normalise(const std::vector<std::uint64_t>& counts, const Spheres<dynamic>&
   const double distinct = share_of_distinct(radial.references, spheres.size());
   for (std::size_t k = 0; k < counts.size(); ++k) {
     const double from = static_cast<double>(k) * radial.bin_width, to = from + radial.bin_width;
-    const double expected = references * density * shell_volume(spheres.dimension(), from, to);
+    const double share = radial.share.empty() ? 1 : radial.share[k];
+    const double expected = references * density * share * shell_volume(spheres.dimension(), from, to);
     const auto count = static_cast<double>(counts[k]);
+    const double g = count / expected;
     radial.r.push_back(0.5 * (from + to));
-    radial.g.push_back(count / expected);
-    radial.error.push_back(std::sqrt(std::max(1.0, count / distinct)) / expected);
+    radial.g.push_back(g);
+    const double of_share = radial.share.empty() ? 0 : g * radial.share_error[k] / share;
+    radial.error.push_back(std::hypot(std::sqrt(std::max(1.0, count / distinct)) / expected, of_share));
   }
 }
 
@@ -72,12 +80,89 @@ void find_peaks(RadialDistribution& radial) {
   }
 }
 
+/// Where centres may be between walls.
+struct Window {
+  const Container& container;  ///< in its own frame, as all that follows
+  std::optional<LowerPart> below;
+  double margin;  ///< from the walls
+  double volume;
+
+  bool contains(const Vector<3>& p) const {
+    return (!below || below->contains(p)) && container.clearance_within(p, 2 * margin) >= margin;
+  }
+};
+
+/// The mean share of the shells about the centres that lies in the window: of every bin as many places, each
+/// in a random direction from one of the centres, which take turns.
+void sample_shares(const Window& window, const Spheres<3>& centers, double width, double places,
+                   RadialDistribution& radial, std::size_t bins) {
+  constexpr double fewest = 200;
+  const auto tried = static_cast<std::size_t>(std::max(fewest, places / static_cast<double>(bins)));
+  const std::size_t n = centers.size();
+  radial.share.assign(bins, 0);
+  radial.share_error.assign(bins, 0);
+  parallel_for(bins, [&](std::size_t bin) {
+    Random random(3, stream(Stream::measure, bin));
+    std::size_t inside = 0;
+    for (std::size_t k = 0; k < tried; ++k) {
+      // As evenly as can be over centres and over the thickness of the shell.
+      const auto i = static_cast<std::size_t>((static_cast<double>(k) + random.uniform()) /
+                                              static_cast<double>(tried) * static_cast<double>(n));
+      const double r = (static_cast<double>(bin) + random.uniform()) * width;
+      inside += window.contains(centers.center(std::min(i, n - 1)) + r * uniform_direction<3>(random));
+    }
+    const double share = static_cast<double>(inside) / static_cast<double>(tried);
+    radial.share[bin] = share;
+    radial.share_error[bin] = std::sqrt(std::max(share * (1 - share), 0.0) / static_cast<double>(tried));
+  });
+}
+
+/// g(r) between walls; the bins are those of `radial`.
+void between_walls(const Spheres<dynamic>& spheres, const Domain& domain, const RadialOptions& options,
+                   const std::shared_ptr<const Container>& made, RadialDistribution& radial,
+                   std::size_t bins) {
+  const Frame frame = frame_of(domain);
+  const auto container = local_container(domain, made);
+  const auto below = options.below ? std::optional(options.below->to_local(frame)) : std::nullopt;
+  Spheres<dynamic> counted = spheres;
+  Spheres<3> centers = localised(spheres, frame);
+  if (below) {
+    counted = Spheres<dynamic>(3);
+    const Spheres<3> all = std::move(centers);
+    centers = {};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!below->contains(all.center(i))) continue;
+      centers.push_back(all.center(i), all.r[i]);
+      counted.push_back(spheres.center(i), spheres.r[i]);
+    }
+  }
+  if (centers.size() < 2) return;
+  const double smallest = *std::ranges::min_element(centers.r), width = radial.bin_width / frame.scale;
+  const double places = options.places * (std::holds_alternative<Mesh>(domain) ? 0.2 : 1.0);
+  const Depths depths(to_local(domain, frame), *container, 2 * smallest,
+                      static_cast<std::size_t>(std::max(places / 4, 1e4)), below);
+  const Window window{*container, below, smallest, depths.volume() * depths.deeper(smallest)};
+  if (!(window.volume > 0)) return;
+  sample_shares(window, centers, width, places, radial, bins);
+  while (!radial.share.empty() && radial.share.back() < RadialOptions::least_share) {
+    radial.share.pop_back();
+    radial.share_error.pop_back();
+  }
+  if (radial.share.empty()) return;
+  const Histogram empty(radial.share.size(), width);
+  const Histogram found = tally_of_pairs<3>(centers, localised(boundary_of<3>(domain), frame), empty,
+                                            options.work, radial.references);
+  normalise(found.counts(), counted, window.volume * std::pow(frame.scale, 3), radial);
+}
+
 }  // namespace
 
 std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>& spheres, const Domain& domain,
-                                                      const RadialOptions& options) {
+                                                      const RadialOptions& options,
+                                                      const std::shared_ptr<const Container>& made) {
   const std::vector<double>& radii = spheres.r;
-  if (has_walls(domain) || radii.size() < 2) return {};
+  const bool walls = has_walls(domain);
+  if (radii.size() < 2 || (walls && dimension_of(domain) != 3)) return {};
   const auto n = static_cast<double>(radii.size());
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / n;
   double squares = 0;
@@ -87,10 +172,19 @@ std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>& sp
   radial.mean_diameter = 2 * mean;
   radial.radius_spread = std::sqrt(squares / n);
   radial.bin_width = options.bin * radial.mean_diameter;
-  const double reach =
-      std::min(options.reach * radial.mean_diameter, 0.5 * bounds_of<dynamic>(domain).size().minCoeff());
+  double reach = options.reach * radial.mean_diameter;
+  with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
+    for (const double period : boundary_of<dimension>(domain).edges)
+      if (period > 0) reach = std::min(reach, 0.5 * period);
+  });
   const double bins = std::floor(reach / radial.bin_width + slack);
   if (!(bins >= 1)) return {};
+  if (walls) {
+    between_walls(spheres, domain, options, made, radial, static_cast<std::size_t>(bins));
+    if (radial.r.empty()) return {};
+    find_peaks(radial);
+    return radial;
+  }
   const Histogram empty(static_cast<std::size_t>(bins), radial.bin_width);
   Histogram found = empty;
   with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {

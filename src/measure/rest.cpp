@@ -133,7 +133,7 @@ class SpheresInWalls {
     near.clear();
     container_.facets_near(p, reach, near);
     for (const NearFacet& n : near) {
-      if (n.facet.kind != Facet::Kind::triangle && n.facet.kind != Facet::Kind::plane &&
+      if (!has_border(n.facet.kind) && n.facet.kind != Facet::Kind::plane &&
           n.facet.radius - r <= snug * (reach - r))
         add_all_around(normals, n.facet);
       else

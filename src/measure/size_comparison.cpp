@@ -158,6 +158,18 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
 }
 
+void compare_volume_quantiles(const std::vector<double>& sorted, const SizeDistribution& asked,
+                              int dimension, SizeComparison& result) {
+  std::vector<double> up_to;
+  double sum = 0;
+  for (const double r : sorted) up_to.push_back(sum += std::pow(r / sorted.back(), dimension));
+  for (const double share : {0.1, 0.5, 0.9}) {
+    const auto found = std::ranges::lower_bound(up_to, share * sum);
+    const auto k = std::min(sorted.size() - 1, static_cast<std::size_t>(found - up_to.begin()));
+    result.volume_quantiles.push_back({share, sorted[k], radius_holding(asked, 1 - share, dimension)});
+  }
+}
+
 }  // namespace
 
 SizeComparison compare_sizes(std::span<const double> radii, const SizeDistribution& asked, int dimension) {
@@ -170,6 +182,7 @@ SizeComparison compare_sizes(std::span<const double> radii, const SizeDistributi
   compare_means(sorted, asked, dimension, result);
   for (const double share : {0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 1.0})
     result.quantiles.push_back({share, quantile(sorted, share), asked.quantile(share)});
+  compare_volume_quantiles(sorted, asked, dimension, result);
   return result;
 }
 

@@ -20,6 +20,10 @@ namespace {
 /// partial sums, which are added in a fixed order.
 constexpr std::size_t spheres_together = 32, most_parts = 64;
 constexpr double fewest_vectors = 8, most_vectors = 400;  // a bin
+/// Of large packings so many a bin at least, and where the first peak is, so that its height is known to a
+/// fourteenth.
+constexpr double enough_vectors = 24, enough_at_peak = 200;
+constexpr double peak_from = 4, peak_to = 10;  // inverse mean diameters
 // Standard deviations: one box of random points in a hundred has such a bin.
 constexpr double surely_higher = 4.5;
 
@@ -171,7 +175,7 @@ void add_bin(const std::vector<WaveVector<D>>& vectors, std::span<const double> 
 std::optional<StructureFactor::Peak> StructureFactor::peak() const {
   std::optional<std::size_t> highest;
   for (std::size_t b = 0; b < k.size(); ++b)
-    if (k[b] * mean_diameter > 4 && k[b] * mean_diameter < 10 && (!highest || s[b] > s[*highest]))
+    if (k[b] * mean_diameter > peak_from && k[b] * mean_diameter < peak_to && (!highest || s[b] > s[*highest]))
       highest = b;
   if (!highest || *highest == 0 || *highest + 1 == k.size()) return {};
   const std::size_t b = *highest;
@@ -189,12 +193,17 @@ std::optional<StructureFactor> structure_factor(const Spheres<dynamic>& spheres,
   found.mean_diameter = 2 * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) / n;
   found.bin_width = options.bin / found.mean_diameter;
   const auto bins = static_cast<std::size_t>(std::ceil(options.reach / options.bin));
-  const auto a_bin = static_cast<std::size_t>(
-      std::clamp(options.work / n / static_cast<double>(bins), fewest_vectors, most_vectors));
+  const double affordable = options.work / n / static_cast<double>(bins);
+  std::vector<std::size_t> a_bin(bins);
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    const double k = options.bin * static_cast<double>(bin);
+    const double enough = k + options.bin > peak_from && k < peak_to ? enough_at_peak : enough_vectors;
+    a_bin[bin] = static_cast<std::size_t>(std::clamp(affordable, enough, most_vectors));
+  }
   with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
     const Boundary<D> boundary = boundary_of<D>(domain);
-    const auto vectors = wave_vectors<D>(boundary.edges, found.bin_width, bins, a_bin);
+    const auto vectors = wave_vectors<D>(boundary.edges, found.bin_width, a_bin);
     const Spheres<D> in_space = spheres.in<D>();
     const std::vector<double> squares = WaveSums<D>(in_space, boundary, vectors).squares();
     std::size_t first = 0;

@@ -1,6 +1,7 @@
 #include "measure/touching.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <span>
@@ -29,40 +30,67 @@ bool counts(std::uint32_t i, std::uint32_t j, const Vector<D>& d) {
   return false;
 }
 
-/// Converts a pair with a gap below the widest.
+/// Converts a pair with a gap below the widest, for a `Part` of them.
 struct AsPair {
-  using Found = NearPair;
+  using Part = std::vector<NearPair>;
   double widest;
 
   template <int D>
-  Found operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) const {
+  NearPair operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) const {
     return {i, j, gap};
   }
 };
+template <int D>
 struct AsBond {
-  using Found = NearBond;
+  using Part = std::vector<BondIn<D>>;
   double widest;
 
-  Found operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<3>& d) const {
+  BondIn<D> operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<D>& d) const {
     return {i, j, d, gap};
   }
 };
 struct AsDirection {
-  using Found = NearDirection;
+  using Part = std::vector<NearDirection>;
   double widest;
 
-  Found operator()(std::uint32_t i, std::uint32_t j, double, const Vector<3>& d) const {
+  NearDirection operator()(std::uint32_t i, std::uint32_t j, double, const Vector<3>& d) const {
     return {i, j, d.stableNormalized().cast<float>()};
   }
 };
 struct AsRanked {
-  using Found = RankedPair;
+  using Part = std::vector<RankedPair>;
   std::span<const double> gaps;
   double widest = gaps.back();
 
   template <int D>
-  Found operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) const {
+  RankedPair operator()(std::uint32_t i, std::uint32_t j, double gap, const Vector<D>&) const {
     return {i, j, static_cast<std::uint32_t>(std::ranges::upper_bound(gaps, gap) - gaps.begin())};
+  }
+};
+/// Counts the ends of pairs at once, in any order, and keeps the sum of a part.
+template <int D>
+struct AsSum {
+  class Part {
+   public:
+    void push_back(const Vector<D>& n) {
+      products_ += n * n.transpose();
+      ++pairs_;
+    }
+    std::size_t size() const { return pairs_; }
+    void shrink_to_fit() {}
+    const Eigen::Matrix<double, D, D>& products() const { return products_; }
+
+   private:
+    Eigen::Matrix<double, D, D> products_ = Eigen::Matrix<double, D, D>::Zero();
+    std::size_t pairs_ = 0;
+  };
+  double widest;
+  std::uint32_t* ends;
+
+  Vector<D> operator()(std::uint32_t i, std::uint32_t j, double, const Vector<D>& d) const {
+    for (const std::uint32_t end : {i, j})
+      std::atomic_ref(ends[end]).fetch_add(1, std::memory_order_relaxed);
+    return d.stableNormalized();
   }
 };
 
@@ -70,7 +98,7 @@ struct AsRanked {
 /// found from its smaller sphere, whose search radius is small.
 template <int D, class As>
 void append_pairs(const std::vector<double>& radii, std::span<const SizeLevel<D>> levels, std::uint32_t i,
-                  const Vector<D>& c, const As& as, std::vector<typename As::Found>& out) {
+                  const Vector<D>& c, const As& as, typename As::Part& out) {
   const double r = radii[i];
   for (const SizeLevel<D>& level : levels) {
     const bool own = &level == &levels.back();
@@ -121,18 +149,18 @@ void require_few(std::size_t pairs, std::size_t most) {
                     most));
 }
 
-template <int D, class As>
-using Parts = std::vector<std::vector<typename As::Found>>;
+template <class As>
+using Parts = std::vector<typename As::Part>;
 
 /// In consecutive parts.
 template <int D, class As>
-Parts<D, As> parts_among(Spheres<D> spheres, const Boundary<D>& boundary, const As& as) {
+Parts<As> parts_among(Spheres<D> spheres, const Boundary<D>& boundary, const As& as) {
   constexpr std::size_t chunk = 4096;
   require_countable_images(spheres, boundary, as.widest);
   const std::size_t most = most_pairs<D>(spheres.size(), as.widest);
   const std::vector<SizeLevel<D>> levels = levels_of(spheres, boundary, as.widest);
   spheres.x = {};  // the grids hold them
-  Parts<D, As> parts;
+  Parts<As> parts;
   std::size_t pairs = 0;
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const PointGrid<D>& grid = *levels[l].grid;
@@ -169,13 +197,13 @@ std::vector<Found> joined(std::vector<std::vector<Found>> parts) {
 bool has_own_frame(const Domain& domain) { return has_walls(domain) && dimension_of(domain) == 3; }
 
 template <class As>
-Parts<3, As> parts_in_own_frame(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
+Parts<As> parts_in_own_frame(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
   const Frame frame = frame_of(domain);
   return parts_among<3>(localised(spheres, frame), localised(boundary_of<3>(domain), frame), as);
 }
 
 template <class As>
-std::vector<std::vector<typename As::Found>> parts_of(const Spheres<dynamic>& spheres, const Domain& domain,
+Parts<As> parts_of(const Spheres<dynamic>& spheres, const Domain& domain,
                                                       const As& as) {
   if (spheres.empty()) return {};
   if (has_own_frame(domain)) return parts_in_own_frame(spheres, domain, as);
@@ -187,7 +215,7 @@ std::vector<std::vector<typename As::Found>> parts_of(const Spheres<dynamic>& sp
 
 /// Precondition: three dimensions.
 template <class As>
-Parts<3, As> parts_in_space(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
+Parts<As> parts_in_space(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
   if (spheres.empty()) return {};
   if (has_own_frame(domain)) return parts_in_own_frame(spheres, domain, as);
   return parts_among<3>(spheres.in<3>(), boundary_of<3>(domain), as);
@@ -204,8 +232,42 @@ std::vector<std::vector<RankedPair>> ranked_pairs(const Spheres<dynamic>& sphere
   return parts_of(spheres, domain, AsRanked{gaps});
 }
 
+namespace {
+
+template <int D, class As>
+Parts<As> parts_in_dimension(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
+  if constexpr (D == 3) {
+    return parts_in_space(spheres, domain, as);
+  } else {
+    if (spheres.empty()) return {};
+    return parts_among<D>(spheres.in<D>(), boundary_of<D>(domain), as);
+  }
+}
+
+}  // namespace
+
+template <int D>
+std::vector<BondIn<D>> bonds_in(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
+  return joined(parts_in_dimension<D>(spheres, domain, AsBond<D>{widest_gap}));
+}
+
 std::vector<NearBond> near_bonds(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
-  return joined(parts_in_space(spheres, domain, AsBond{widest_gap}));
+  return bonds_in<3>(spheres, domain, widest_gap);
+}
+
+BondSums bond_sums(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap) {
+  BondSums sums;
+  const int dimension = spheres.dimension();
+  sums.ends.resize(spheres.size());
+  sums.products = Eigen::MatrixXd::Zero(dimension, dimension);
+  with_dimension(dimension, EveryDimension{}, [&](auto of_space) {
+    constexpr int D = of_space;
+    for (const auto& part : parts_in_dimension<D>(spheres, domain, AsSum<D>{widest_gap, sums.ends.data()})) {
+      sums.products += part.products();
+      sums.pairs += part.size();
+    }
+  });
+  return sums;
 }
 
 namespace {
@@ -223,7 +285,7 @@ Patch<D> middle_patch(const Spheres<dynamic>& spheres, const Domain& domain, std
 }
 
 template <int D, class As>
-Parts<D, As> parts_in(Patch<D>&& patch, const Domain& domain, const As& as) {
+Parts<As> parts_in(Patch<D>&& patch, const Domain& domain, const As& as) {
   if constexpr (D == 3)
     if (has_own_frame(domain)) {
       const Frame frame = frame_of(domain);
@@ -267,41 +329,72 @@ std::vector<NearPair> near_pairs_inside(const Spheres<dynamic>& spheres, const D
 
 namespace {
 
-/// The same for a box of any dimension.
-std::vector<NearWall> near_faces(const Box& box, const Spheres<dynamic>& spheres, double widest_gap) {
-  std::vector<NearWall> near;
+/// Calls visit(sphere, gap, direction to the wall) for every wall of a box of any dimension.
+template <class Visit>
+void visit_faces(const Box& box, const Spheres<dynamic>& spheres, double widest_gap, const Visit& visit) {
+  const int dimension = box.dimension();
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {
     const double r = spheres.r[i];
-    for (int k = 0; k < box.dimension(); ++k) {
+    for (int k = 0; k < dimension; ++k) {
       if (!box.has_wall(k)) continue;
       const double c = spheres.x[static_cast<std::size_t>(k)][i];
-      for (const double clearance : {c - box.corner[k], box.corner[k] + box.size[k] - c})
-        if (clearance < (1 + widest_gap) * r) near.push_back({i, (clearance - r) / r});
+      for (const auto& [clearance, sign] :
+           {std::pair{c - box.corner[k], -1.0}, std::pair{box.corner[k] + box.size[k] - c, 1.0}})
+        if (clearance < (1 + widest_gap) * r)
+          visit(i, (clearance - r) / r, Vector<dynamic>(sign * Vector<dynamic>::Unit(dimension, k)));
     }
   }
-  return near;
 }
 
-}  // namespace
-
-std::vector<NearWall> near_walls(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
-                                 const std::shared_ptr<const Container>& made) {
-  if (spheres.empty() || !has_walls(domain)) return {};
+template <class Visit>
+void visit_walls(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
+                 const std::shared_ptr<const Container>& made, const Visit& visit) {
+  if (spheres.empty() || !has_walls(domain)) return;
   const auto* box = std::get_if<Box>(&domain);
-  if (box && !has_own_frame(domain)) return near_faces(*box, spheres, widest_gap);
+  if (box && !has_own_frame(domain)) return visit_faces(*box, spheres, widest_gap, visit);
   const Frame frame = frame_of(domain);
   const auto container = local_container(domain, made);
   const Spheres<3> local = localised(spheres, frame);
-  std::vector<NearWall> near;
   std::vector<WallPoint> points;
   for (std::uint32_t i = 0; i < local.size(); ++i) {
     const double r = local.r[i], reach = (1 + widest_gap) * r;
     points.clear();
     container->walls_near(local.center(i), reach, points);
     for (const WallPoint& p : points)
-      if (p.clearance < reach) near.push_back({i, (p.clearance - r) / r});
+      if (p.clearance < reach)
+        visit(i, (p.clearance - r) / r, Vector<dynamic>(-p.inward.head(spheres.dimension())));
   }
+}
+
+}  // namespace
+
+std::vector<NearWall> near_walls(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
+                                 const std::shared_ptr<const Container>& made) {
+  std::vector<NearWall> near;
+  visit_walls(spheres, domain, widest_gap, made,
+              [&](std::uint32_t i, double gap, const Vector<dynamic>&) { near.push_back({i, gap}); });
   return near;
 }
+
+std::vector<WallBond> wall_bonds(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
+                                 const std::shared_ptr<const Container>& made) {
+  std::vector<WallBond> near;
+  visit_walls(spheres, domain, widest_gap, made,
+              [&](std::uint32_t i, double gap, const Vector<dynamic>& outward) {
+                near.push_back({i, outward, gap});
+              });
+  return near;
+}
+
+#define BERNAL_BONDS_IN(D) \
+  template std::vector<BondIn<D>> bonds_in<D>(const Spheres<dynamic>&, const Domain&, double);
+BERNAL_BONDS_IN(1)
+BERNAL_BONDS_IN(2)
+BERNAL_BONDS_IN(4)
+BERNAL_BONDS_IN(5)
+BERNAL_BONDS_IN(6)
+BERNAL_BONDS_IN(7)
+BERNAL_BONDS_IN(8)
+#undef BERNAL_BONDS_IN
 
 }  // namespace bernal

@@ -16,12 +16,14 @@ struct NearPair {
   double gap;  ///< (d - ri - rj) / (ri + rj)
 };
 
-/// A pair in three dimensions, with the displacement to the second, in any unit of length.
-struct NearBond {
+/// A pair, with the displacement to the second, in any unit of length.
+template <int D>
+struct BondIn {
   std::uint32_t first, second;
-  Vector<3> displacement;
+  Vector<D> displacement;
   double gap;  ///< as NearPair::gap
 };
+using NearBond = BondIn<3>;
 
 /// A pair and its direction only, a unit vector in single precision; 0 if the centres coincide.
 struct NearDirection {
@@ -39,6 +41,20 @@ struct NearWall {
   std::uint32_t sphere;
   double gap;  ///< (clearance - r) / r
 };
+/// The same, with the direction to the wall's point.
+struct WallBond {
+  std::uint32_t sphere;
+  Vector<dynamic> outward;  ///< of unit length
+  double gap;
+};
+
+/// What pairs add up to: how many each sphere has, with a pair of a sphere and its own image counted twice,
+/// and the sum over all pairs of n n^T, where n is the unit vector between the centres, 0 if these coincide.
+struct BondSums {
+  std::vector<std::uint32_t> ends;
+  Eigen::MatrixXd products;
+  std::uint64_t pairs = 0;
+};
 
 /// All pairs with a gap ratio below `widest_gap`, each once, in an order independent of the number of
 /// threads. Cost: O(N + pairs).
@@ -47,7 +63,12 @@ std::vector<NearPair> near_pairs(const Spheres<dynamic>&, const Domain&, double 
 /// bytes a pair and no more.
 std::vector<std::vector<RankedPair>> ranked_pairs(const Spheres<dynamic>&, const Domain&,
                                                   std::span<const double> gaps);
-/// The same pairs in the same order. Precondition: three dimensions.
+/// The same pairs in the same order. Precondition: D dimensions.
+template <int D>
+std::vector<BondIn<D>> bonds_in(const Spheres<dynamic>&, const Domain&, double widest_gap);
+/// Of the same pairs; nothing is kept of each of them.
+BondSums bond_sums(const Spheres<dynamic>&, const Domain&, double widest_gap);
+/// `bonds_in` three dimensions.
 std::vector<NearBond> near_bonds(const Spheres<dynamic>&, const Domain&, double widest_gap);
 
 /// The bonds of some spheres in the middle and of their neighbours, in parts of some thousand spheres: 20
@@ -65,6 +86,9 @@ std::vector<NearPair> near_pairs_inside(const Spheres<dynamic>&, const Domain&, 
                                         std::size_t most);
 /// Empty without walls.
 std::vector<NearWall> near_walls(const Spheres<dynamic>&, const Domain&, double widest_gap,
+                                 const std::shared_ptr<const Container>& made);
+/// The same in the same order.
+std::vector<WallBond> wall_bonds(const Spheres<dynamic>&, const Domain&, double widest_gap,
                                  const std::shared_ptr<const Container>& made);
 
 }  // namespace bernal

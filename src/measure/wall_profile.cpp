@@ -87,8 +87,9 @@ std::vector<double> clearances(const Container& container, const Spheres<3>& sph
   return found;
 }
 
-double volume_below(const LowerPart& part, const Vector<3>& center, double r) {
-  return ball_below(3, r, part.height - part.height_of(center));
+double volume_in(const LowerPart& part, const Vector<3>& center, double r) {
+  const double z = part.height_of(center);
+  return ball_below(3, r, part.height - z) - ball_below(3, r, part.from - z);
 }
 
 /// Spreads the volumes of the spheres over the zones; spheres beyond reach count whole. Parts above the level
@@ -105,7 +106,7 @@ std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
          ++i) {
       throw_if_interrupted();
       const double r = spheres.r[i];
-      const double v = below ? volume_below(*below, spheres.center(i), r) : ball_volume(3, r);
+      const double v = below ? volume_in(*below, spheres.center(i), r) : ball_volume(3, r);
       if (!(v > 0)) continue;
       const bool cut = v < ball_volume(3, r);
       std::ranges::fill(inside, 0u);
@@ -144,19 +145,11 @@ Fraction fraction_of(const Filling& filling, double share, double share_error, d
   return {value, std::hypot(std::sqrt(filling.variance) / (share * volume), value * share_error / share)};
 }
 
-std::optional<WallProfile::Minimum> first_minimum(const WallProfile& profile, double thickness) {
-  const std::vector<WallProfile::Layer>& layers = profile.layers;
-  const auto end = std::ranges::partition_point(
-      layers, [&](const auto& layer) { return layer.from + 0.5 * thickness < profile.mean_diameter; });
-  const auto lowest = std::ranges::min_element(layers.begin(), end, {}, &WallProfile::Layer::porosity);
-  const auto last_even = layers.end() - 1;  // the last layer may have any thickness
-  if (lowest == layers.begin() || last_even - lowest < 2) return {};
-  const double before = lowest[-1].porosity, least = lowest->porosity, after = lowest[1].porosity;
-  if (after < least) return {};  // decreasing further
-  const double bend = before - 2 * least + after;
-  const double shift = bend > 0 ? 0.5 * (before - after) / bend : 0;
-  return WallProfile::Minimum{lowest->from + (0.5 + shift) * thickness,
-                              least - 0.25 * (before - after) * shift};
+std::optional<WallProfile::Minimum> minimum_of(const WallProfile& profile, double thickness) {
+  std::vector<double> porosities;
+  for (const WallProfile::Layer& layer : profile.layers) porosities.push_back(layer.porosity);
+  porosities.pop_back();  // the last layer may have any thickness
+  return first_minimum(porosities, thickness, profile.mean_diameter);
 }
 
 /// The volumes of the spheres, in cubed mean radii, and their sums by place.
@@ -200,7 +193,7 @@ class Volumes {
 double filled_below(const Spheres<3>& spheres, const LowerPart& below) {
   double sum = 0;
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    sum += volume_below(below, spheres.center(i), spheres.r[i]);
+    sum += volume_in(below, spheres.center(i), spheres.r[i]);
   return sum;
 }
 
@@ -210,6 +203,20 @@ Region region_of(double clearance, double r, const Zones& zones) {
 }
 
 }  // namespace
+
+std::optional<WallProfile::Minimum> first_minimum(std::span<const double> porosities, double thickness,
+                                                  double diameter) {
+  const auto middle = [&](std::size_t k) { return (static_cast<double>(k) + 0.5) * thickness; };
+  std::size_t lowest = 0;
+  for (std::size_t k = 1; k < porosities.size() && middle(k) < diameter; ++k)
+    if (porosities[k] < porosities[lowest]) lowest = k;
+  if (lowest == 0 || lowest + 1 >= porosities.size()) return {};
+  const double before = porosities[lowest - 1], least = porosities[lowest], after = porosities[lowest + 1];
+  if (after < least) return {};  // decreasing further
+  const double bend = before - 2 * least + after;
+  const double shift = bend > 0 ? 0.5 * (before - after) / bend : 0;
+  return WallProfile::Minimum{middle(lowest) + shift * thickness, least - 0.25 * (before - after) * shift};
+}
 
 std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Domain& domain,
                                         const WallOptions& options,
@@ -262,7 +269,7 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
   profile.core_packing_fraction = core.value;
   profile.core_packing_error = core.error;
   profile.core_from = in_scene(zones.core);
-  profile.first_minimum = first_minimum(profile, in_scene(thickness));
+  profile.first_minimum = minimum_of(profile, in_scene(thickness));
   for (std::size_t i = 0; i < spheres.size(); ++i)
     profile.regions.push_back(region_of(clearance[i], spheres.r[i], zones));
   const Volumes volumes(spheres.r, 0.5 * diameter);

@@ -74,8 +74,9 @@ void thin_out(std::vector<WaveVector<D>>& vectors, std::size_t most) {
 }  // namespace
 
 template <int D>
-std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, double width, std::size_t bins,
-                                                     std::size_t most) {
+std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, double width,
+                                                     const std::vector<std::size_t>& most) {
+  const std::size_t bins = most.size();
   const Vector<D> step = steps_of<D>(edges);
   const auto length_of = [&](const Multiples<D>& n) {
     return n.template cast<double>().cwiseProduct(step).norm();
@@ -87,7 +88,7 @@ std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, dou
     const auto bin = static_cast<std::size_t>(length / width);
     if (bin < looked_through) found[bin].push_back({n, length});
   });
-  for (auto& vectors : found) thin_out<D>(vectors, most);
+  for (std::size_t bin = 0; bin < bins; ++bin) thin_out<D>(found[bin], most[bin]);
 
   const auto before = [](const Multiples<D>& a, const Multiples<D>& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
@@ -95,7 +96,7 @@ std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, dou
   for (std::size_t bin = looked_through; bin < bins; ++bin) {
     Random random(2, stream(Stream::measure, bin));
     std::set<Multiples<D>, decltype(before)> drawn(before);
-    for (std::size_t k = 0; k < tries_a_vector * most && found[bin].size() < most; ++k) {
+    for (std::size_t k = 0; k < tries_a_vector * most[bin] && found[bin].size() < most[bin]; ++k) {
       const double wanted = (static_cast<double>(bin) + random.uniform()) * width;
       const Vector<D> direction = uniform_direction<D>(random);
       const Vector<D> multiples = wanted * direction.cwiseQuotient(step);
@@ -111,9 +112,9 @@ std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, dou
   return found;
 }
 
-#define BERNAL_WAVE_VECTORS(D)                                                                         \
-  template std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>&, double, std::size_t, \
-                                                                std::size_t);
+#define BERNAL_WAVE_VECTORS(D)                                                            \
+  template std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>&, double, \
+                                                                const std::vector<std::size_t>&);
 BERNAL_WAVE_VECTORS(1)
 BERNAL_WAVE_VECTORS(2)
 BERNAL_WAVE_VECTORS(3)

@@ -13,11 +13,11 @@ struct WaveVector {
   double length;
 };
 
-/// The allowed wave vectors shorter than bins · width, by bin, at most `most` a bin, one of every two
+/// The allowed wave vectors, by bins of that width from 0 on, at most `most[bin]` of each, one of every two
 /// opposite ones. All vectors of a bin are considered if the box is small enough; else some are drawn in
 /// random directions, always the same, and rounded to the nearest allowed one.
 template <int D>
-std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, double width, std::size_t bins,
-                                                     std::size_t most);
+std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, double width,
+                                                     const std::vector<std::size_t>& most);
 
 }  // namespace bernal

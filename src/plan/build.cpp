@@ -14,6 +14,7 @@
 #include "plan/estimate.hpp"
 #include "plan/fitting.hpp"
 #include "plan/hints.hpp"
+#include "plan/made_plan.hpp"
 #include "plan/price_effects.hpp"
 #include "plan/room_for_gaps.hpp"
 #include "plan/sizes_at_hand.hpp"
@@ -302,9 +303,7 @@ void expect_start(Plan& plan) {
 /// A refusal with what may not be as it is meant with a part, as that may be why: spheres that do not fit
 /// into the wall of a vessel are meant for its hollow.
 [[noreturn]] void refuse_with_caution(const Error& error, const std::string& caution) {
-  const std::string where = error.location().text(), what = error.what();
-  throw Error(error.code(), what.substr(where.empty() ? 0 : where.size() + 2) + "; " + caution,
-              error.location());
+  throw Error(error.code(), error.message() + "; " + caution, error.location());
 }
 
 /// All that is expected of a run, and what it needs for that.
@@ -365,7 +364,7 @@ FillTask fill_task_of(const Plan& plan) {
   return task;
 }
 
-Plan build(const Scene& stated) {
+Plan made_plan(const Scene& stated) {
   Plan plan;
   plan.scene = stated;
   complete(plan.scene);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "bernal/sizes/size_distribution.hpp"
 #include "cad/read/files_of_part.hpp"
 #include "cad/read/known_formats.hpp"
+#include "cad/read/triangulate.hpp"
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "scene/given_files.hpp"
@@ -82,6 +84,45 @@ void pin_files(const Scene& scene, MeshFile& mesh) {
   mesh.sha256 = std::move(digests);
 }
 
+/// A prism has flat faces, so its triangles are the prism itself, but for the rounding of corners by `base`.
+Mesh prism_of(const Extruded& extruded) {
+  require_simple(extruded.polygon);
+  Mesh prism;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const auto& loop : extruded.polygon.loops) {
+    std::vector<Vector<2>> corners;
+    for (const Vector<2>& p : loop)
+      if (corners.empty() || (p != corners.back() && (&p != &loop.back() || p != corners.front())))
+        corners.push_back(p);
+    const auto first = static_cast<std::uint32_t>(prism.vertices.size());
+    const auto n = static_cast<std::uint32_t>(corners.size());
+    for (std::uint32_t k = 0; k < n; ++k) {
+      edges.emplace_back(first + k, first + (k + 1) % n);
+      prism.vertices.push_back(extruded.base + Vector<3>(corners[k][0], corners[k][1], 0));
+    }
+  }
+  const auto below = static_cast<std::uint32_t>(prism.vertices.size());
+  const auto floor = cad::triangulate_regions(prism.vertices, edges, -Vector<3>::UnitZ());
+  if (!floor)
+    throw Error(ErrorCode::bad_argument,
+                "the corners of the polygon are so close that rounding makes its edges cross; move it nearer "
+                "to the origin");
+  for (std::uint32_t k = 0; k < below; ++k)
+    prism.vertices.push_back(prism.vertices[k] + extruded.height * Vector<3>::UnitZ());
+  prism.triangles = *floor;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> of_floor;
+  for (const auto& [a, b, c] : *floor) {
+    prism.triangles.push_back({below + a, below + c, below + b});
+    of_floor.insert({{a, b}, {b, c}, {c, a}});
+  }
+  for (auto [a, b] : edges) {  // a side runs against the edge of the floor
+    if (of_floor.contains({a, b})) std::swap(a, b);
+    prism.triangles.push_back({a, b, below + b});
+    prism.triangles.push_back({a, below + b, below + a});
+  }
+  return prism;
+}
+
 struct MakeDomain {
   Scene& scene;
   std::string& notes;
@@ -91,6 +132,10 @@ struct MakeDomain {
   Domain operator()(const Cylinder& cylinder) const { return cylinder; }
   Domain operator()(const Sphere& sphere) const { return sphere; }
   Domain operator()(const Polygon& polygon) const { return polygon; }
+  Domain operator()(const Cone& cone) const { return solid_of(cone); }
+  Domain operator()(const Tube& tube) const { return solid_of(tube); }
+  Domain operator()(const Lathed& lathed) const { return solid_of(lathed); }
+  Domain operator()(const Extruded& extruded) const { return prism_of(extruded); }
   Domain operator()(MeshFile& mesh) const {
     const Unit unit = scene.unit;
     try {

@@ -296,6 +296,7 @@ double expected_packing_fraction(const Scene& scene, const Domain& shape, const 
     const EmptyBed bed{.dimension = dimension,
                        .relaxed = reached_by_relaxation(shape, radii, part),
                        .wall_share = wall_share(part.area, part.volume, dimension, radii),
+                       .largest = largest,
                        .evenness = std::min(1.0, radii.moment(dimension) / std::pow(largest, dimension)),
                        .share = part.volume / volume_of(shape)};
     double fraction = 0;

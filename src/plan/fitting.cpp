@@ -45,6 +45,10 @@ struct LargestRadius {
     const double by_volume = std::cbrt(3 * volume_of(m) / (4 * std::numbers::pi));
     return std::min(0.5 * bounds_of(m).size().minCoeff(), by_volume);
   }
+  double operator()(const Revolved& s) const {
+    const double by_volume = std::cbrt(3 * volume_of(s) / (4 * std::numbers::pi));
+    return std::min(0.5 * bounds_of(s).size().minCoeff(), by_volume);
+  }
   double operator()(const Polygon& p) const {
     const double by_area = std::sqrt(volume_of(p) / std::numbers::pi);
     return std::min(0.5 * bounds_of<dynamic>(p).size().minCoeff(), by_area);

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/sizes/percentiles.hpp"
+#include "scene/size_kinds.hpp"
+#include "sizes/volume_carriers.hpp"
 
 namespace bernal {
 namespace {
@@ -17,6 +21,8 @@ namespace {
 constexpr double well_below = 0.9;
 /// Shares by number and by mass of one class that differ by more are not mistaken for each other.
 constexpr double far_apart = 0.1;
+/// Where half of the spheres and half of their volume lie apart by more, the basis matters.
+constexpr double basis_matters_from = 1.1;
 
 /// A periodic box that follows from the packing is as large in any unit.
 std::string hint_of_unit(const Plan& plan) {
@@ -72,11 +78,55 @@ std::string hint_of_shares(const Plan& plan) {
       fmt::join(by_number, " : "), fmt::join(by_mass, " : "));
 }
 
+/// Of sizes with a basis, of which the scene's text says none; classes have their own hint.
+std::string hint_of_basis(const Plan& plan) {
+  const SceneSizes& sizes = plan.scene.sizes;
+  const bool has_one = std::visit([](const auto& of) { return requires { of.basis; }; },
+                                  static_cast<const SceneSizes::variant&>(sizes));
+  const auto* lognormal = std::get_if<Lognormal>(&sizes);
+  if (!has_one || std::holds_alternative<Classes>(sizes) || (lognormal && lognormal->d43) ||
+      sizes.locations.whole.line == 0 || sizes.locations.keys.contains("basis"))
+    return {};
+  const int dimension = plan.scene.dimension();
+  const double by_number = 2 * plan.radii->quantile(0.5);
+  const double by_volume = 2 * radius_holding(*plan.radii, 0.5, dimension);
+  if (!(by_volume > basis_matters_from * by_number)) return {};
+  const bool volume = std::holds_alternative<Percentiles>(sizes);
+  return fmt::format(
+      "no basis is said, and \"{}\" is meant: half of the spheres are below {:.4g} {}, half of their {} below "
+      "{:.4g}; say basis = \"{}\" where the sizes are those of {}",
+      volume ? "volume" : "number", by_number, name_of(plan.scene.unit), dimension == 2 ? "area" : "volume",
+      by_volume, volume ? "number" : "volume", volume ? "counted spheres" : "a balance");
+}
+
+std::string hint_of_pan(const Plan& plan) {
+  const auto* sieve = std::get_if<Sieve>(&plan.scene.sizes);
+  if (!sieve || sieve->pan) return {};
+  const SieveCurve curve = curve_of(*sieve);
+  if (curve.in_pan == 0) return {};
+  return fmt::format(
+      "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; \"pan\" "
+      "says how fine they are",
+      100 * curve.in_pan, curve.pan, curve.openings[1], name_of(plan.scene.unit));
+}
+
+std::string hint_of_ends(const Plan& plan) {
+  const auto* given = std::get_if<Percentiles>(&plan.scene.sizes);
+  if (!given || given->law != PercentileLaw::through || (given->min && given->max)) return {};
+  const auto curve = curve_through(given_percentiles(*given), given->min.value_or(0),
+                                   given->max.value_or(std::numeric_limits<double>::infinity()));
+  return fmt::format(
+      "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles goes "
+      "on straight; \"min\" and \"max\" say where",
+      curve.front().size, curve.back().size, name_of(plan.scene.unit));
+}
+
 }  // namespace
 
 std::vector<std::string> hints_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan)})
+  for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan), hint_of_basis(plan),
+                           hint_of_pan(plan), hint_of_ends(plan)})
     if (!hint.empty()) all.push_back(std::move(hint));
   return all;
 }

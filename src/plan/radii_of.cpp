@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "bernal/plan/plan.hpp"
 #include "plan/start.hpp"
+#include "scene/size_kinds.hpp"
+#include "sizes/scaled.hpp"
 
 namespace bernal {
 namespace {
@@ -17,6 +20,11 @@ struct MakeRadii {
   double min_of(const Limit& min) const { return min ? half * *min : 0; }
   double max_of(const Limit& max) const {
     return max ? half * *max : std::numeric_limits<double>::infinity();
+  }
+
+  std::vector<double> halved(std::vector<double> sizes) const {
+    for (double& size : sizes) size *= half;
+    return sizes;
   }
 
   /// Points (radius, amount) by ascending radius.
@@ -37,9 +45,7 @@ struct MakeRadii {
 
   Radii operator()(const Constant& of) const { return make_constant(half * of.value); }
   Radii operator()(const Classes& of) const {
-    std::vector<double> radii = of.values;
-    for (double& r : radii) r *= half;
-    return make_classes(std::move(radii), of.shares, of.basis);
+    return make_classes(halved(of.values), shares_of_one_density(of), of.basis);
   }
   Radii operator()(const Uniform& of) const { return make_uniform(half * of.min, half * of.max, of.basis); }
   Radii operator()(const Normal& of) const {
@@ -47,6 +53,7 @@ struct MakeRadii {
   }
   Radii operator()(const Lognormal& of) const {
     const double min = min_of(of.min), max = max_of(of.max);
+    if (of.mean) return make_lognormal_of_mean(half * *of.mean, half * of.sd.value(), of.basis, min, max);
     if (of.d43) return make_lognormal_of_means(0.5 * *of.d43, 0.5 * of.d32.value(), min, max);
     return make_lognormal(half * of.median.value(), of.sigma.value(), of.basis, min, max);
   }
@@ -55,9 +62,18 @@ struct MakeRadii {
     return make_table(std::move(radii), std::move(densities), of.basis);
   }
   Radii operator()(const Sieve& of) const {
-    auto [radii, passing] = sorted(of.sizes, of.passing);
-    return make_sieve(std::move(radii), std::move(passing));
+    SieveCurve curve = curve_of(of);
+    return make_sieve(halved(std::move(curve.openings)), std::move(curve.passing));
   }
+  Radii operator()(const Percentiles& of) const {
+    return make_from_percentiles(given_percentiles(of, 0.5), of.law, of.basis, min_of(of.min),
+                                 max_of(of.max));
+  }
+  Radii operator()(const Histogram& of) const {
+    return of.counts.empty() ? make_histogram(halved(of.edges), of.masses, Basis::mass)
+                             : make_histogram(halved(of.edges), of.counts, Basis::number);
+  }
+  Radii operator()(const ListedSizes& of) const { return radii_there(halved(of.values)); }
   Radii operator()(const RosinRammler& of) const {
     return make_rosin_rammler(0.5 * of.d63, of.n, half * of.min, max_of(of.max));
   }
@@ -77,7 +93,8 @@ Radii radii_of(const Scene& scene) {
     return radii_there(read_start(copy).spheres.r);
   }
   try {
-    return std::visit(MakeRadii{scene.sizes_are_diameters ? 0.5 : 1.0}, scene.sizes);
+    Radii radii = std::visit(MakeRadii{scene.sizes_are_diameters ? 0.5 : 1.0}, scene.sizes);
+    return scene.scale == 1 ? std::move(radii) : std::make_unique<Scaled>(std::move(radii), scene.scale);
   } catch (const Error& error) {  // what only the numbers together show
     if (error.code() != ErrorCode::bad_argument) throw;
     throw Error(ErrorCode::bad_scene, error.what(), scene.sizes.locations.whole);

@@ -12,6 +12,7 @@
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"
+#include "scene/complete_sizes.hpp"
 #include "scene/given_files.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/stage_table.hpp"
@@ -94,6 +95,7 @@ void pin_digest(Scene& scene, const std::string& digest) {
 }
 
 void complete_count(Scene& scene, std::size_t there) {
+  complete_count_of_list(scene, there);
   std::optional<std::int64_t>& count = scene.target.count;
   const auto n = static_cast<std::int64_t>(there);
   if (!count && !scene.draws()) count = n;

@@ -46,6 +46,7 @@ std::shared_ptr<const Container> container_of(const Domain& region, const Plan& 
   if (!plan.container) return nullptr;
   if (const auto* mesh = std::get_if<Mesh>(&region)) return moved(*mesh);
   if (const auto* polygon = std::get_if<Polygon>(&region)) return moved(*polygon);
+  if (const auto* revolved = std::get_if<Revolved>(&region)) return moved(*revolved);
   return nullptr;
 }
 

@@ -73,8 +73,40 @@ py::object walls_of(const Packing& packing) {
 
 std::vector<double> coordination_of(const Packing& packing, const std::vector<double>& gaps) {
   std::vector<double> all;
-  for (const Contacts& contacts : measure_contacts(packing.spheres, packing.domain, gaps, packing.container))
+  for (const Contacts& contacts : measure_contacts_across(packing.scene.gap, packing.scene.wall_gap, packing.spheres,
+                                                          packing.domain, gaps, packing.container))
     all.push_back(contacts.coordination);
+  return all;
+}
+
+template <class T>
+py::array_t<T> copy_of(const std::vector<T>& column) {
+  return py::array_t<T>(static_cast<py::ssize_t>(column.size()), column.data());
+}
+
+/// An array with a column for each axis.
+py::array_t<double> rows_of(const std::vector<std::vector<double>>& columns, std::size_t rows) {
+  py::array_t<double> made(
+      std::vector<py::ssize_t>{static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns.size())});
+  double* x = made.mutable_data();
+  for (std::size_t i = 0; i < rows; ++i)
+    for (const std::vector<double>& column : columns) *x++ = column[i];
+  return made;
+}
+
+py::dict contacts_of(const Packing& packing, double contact_gap) {
+  ContactList list;
+  {
+    const Unlocked others_run;
+    list = contact_list(packing.spheres, packing.domain,
+                        {contact_gap, packing.scene.gap, packing.scene.wall_gap, packing.container});
+  }
+  py::dict all;
+  all["i"] = copy_of(list.i);
+  all["j"] = copy_of(list.j);
+  all["gap"] = copy_of(list.gap);
+  all["normal"] = rows_of(list.normal, list.size());
+  all["place"] = rows_of(list.place, list.size());
   return all;
 }
 
@@ -100,6 +132,7 @@ void bind_packing(py::module_& module) {
       .def("picture", &picture_of, OthersRun())
       .def("section", &section_of_packing, OthersRun())
       .def("coordination", &coordination_of, OthersRun())
+      .def("contacts", &contacts_of)
       .def(
           "hash", [](const Packing& packing) { return hash_of(packing.spheres); }, OthersRun())
       .def("domain", [](const Packing& packing) { return name_of(packing.domain); })

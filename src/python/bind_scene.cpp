@@ -12,6 +12,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/report/json.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -112,6 +113,9 @@ void bind_scene(py::module_& module) {
   module.def("write_scene", &write_scene);
   module.def("reference", &scene_reference_as_json);
   module.def("remedy", &remedy_of);
+  module.def("is_mesh_file", &is_mesh_file_name);
+  module.def("unit_of_mesh_file",
+             [](const std::filesystem::path& file) { return name_of(unit_of_mesh_file(file)); });
 }
 
 }  // namespace bernal::python

@@ -82,6 +82,7 @@ py::array_t<T> array_of(const std::vector<T>& values) {
 /// Arrays with one entry for each sphere. A sphere in no chamber has -1.
 py::dict per_sphere(const Measurements& measured) {
   py::dict all;
+  all["coordination"] = array_of(measured.of_contacts.coordination);
   if (measured.local) {
     all["local_packing_fraction"] = array_of(measured.local->packing_fraction);
     all["cell_volume"] = array_of(measured.local->cell_volume);
@@ -158,8 +159,7 @@ JobPointer inspect_job(const Scene& scene, std::optional<double> radius, const s
     monitor.report({"diagnose", -1, {}});
     const ImportedMesh imported = read_mesh(file);
     const bool usable = imported.report.usable();
-    std::vector<std::string> lines;
-    if (!usable) lines = lines_that_help(file, {}, imported, Effort::thorough);
+    const std::vector<std::string> lines = lines_that_help(file, {}, imported, Effort::thorough);
     if (places) write_places(imported, *places);
     std::optional<Chambers> chambers;
     if (radius && usable) chambers = chambers_for(imported.mesh, *radius);

@@ -49,14 +49,21 @@ std::string describe(const Plan& plan) {
         has_walls(plan.domain) ? fmt::format(" and {:g} from walls", plan.scene.wall_gap) : std::string());
   for (const Output& output : plan.scene.outputs)
     text += fmt::format("output     {}\n", describe_output(output));
-  return text;
+  return in_dimension(plan.scene.dimension(), text);
 }
 
 std::string describe_sizes(const Scene& scene) {
   if (!scene.draws()) return "the sizes are those of the start";
-  return fmt::format("{} in {}: {}{}", scene.sizes_are_diameters ? "diameter" : "radius", name_of(scene.unit),
-                     sizes_in_words(scene.sizes),
-                     scene.draw == Draw::quantiles ? "; drawn by quantiles" : "");
+  const bool is_one = std::holds_alternative<Constant>(scene.sizes);
+  std::string scale;
+  if (scene.largest && !is_one) scale = "; all on the largest scale on which they fit";
+  if (!scene.largest && scene.scale != 1) scale = fmt::format("; all times {:.6g}", scene.scale);
+  return fmt::format("{} in {}: {}{}{}", scene.sizes_are_diameters ? "diameter" : "radius",
+                     name_of(scene.unit),
+                     scene.largest && is_one ? "as large as fit" : sizes_in_words(scene.sizes), scale,
+                     each_once(scene.sizes)          ? ""
+                     : scene.draw == Draw::quantiles ? "; drawn by quantiles"
+                                                     : "");
 }
 
 std::string amount_in_words(const Scene& scene, double diameter, bool are_equal, std::uint64_t count) {

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/core/text.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "report/size_summary.hpp"
 
 namespace bernal {
 namespace {
@@ -83,6 +85,7 @@ std::string_view density_in_words(const BedTarget& bed) {
 std::string explain(const Plan& plan) {
   const Scene& scene = plan.scene;
   std::string text = describe(plan);
+  text += summary_in_words(summary_of(scene, *plan.radii), scene);
   for (const std::string& hint : plan.hints) text += fmt::format("note       {}\n", hint);
   text += fmt::format("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
   if (const auto& bed = plan.expected_bed)
@@ -102,7 +105,7 @@ std::string explain(const Plan& plan) {
   if (scene.stages_are_default)
     text += fmt::format("\nThe scene names no stages. This protocol runs; paste it to change it:\n\n{}",
                         stages_as_toml(scene));
-  return text;
+  return in_dimension(scene.dimension(), text);
 }
 
 }  // namespace bernal

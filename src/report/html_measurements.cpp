@@ -119,6 +119,28 @@ void write_profile(Page& page, const WallProfile& profile, const std::string& un
              "mean volume of the spheres there over that of all; the error is that of chance");
 }
 
+/// The side of a column alone, and how its ends compare.
+void write_column(Page& page, const ColumnProfile& column, const Report& report) {
+  if (!column.side) return;
+  const WallProfile& side = column.side->profile;
+  page.add(
+      "<h2>From the side of the column inwards</h2>\n<p>The same for the side walls alone, between {:.4g} and "
+      "{:.4g} {} above the floor: the ends are left out.</p>\n<div class=\"pair\"><div>{}</div><div "
+      "class=\"wide\"><table>\n",
+      column.side->from, column.side->to, escaped(name_of(report.packing.scene.unit)), wall_chart(side));
+  const auto row = [&](std::string_view of, const std::optional<WallProfile::Minimum>& least) {
+    if (least)
+      page.row(of, fmt::format("{:.3f}", least->porosity),
+               fmt::format("the least porosity, {:.2f} mean diameters from there",
+                           least->z / column.mean_diameter));
+  };
+  row("first minimum at the side", side.first_minimum);
+  row("first minimum at the floor", column.floor_minimum);
+  row("first minimum at the lid", column.lid_minimum);
+  page.row("mean porosity", fmt::format("{:.4f}", side.mean_porosity), "between these heights");
+  page.raw("</table></div></div>\n");
+}
+
 void write_order(Page& page, const BondOrder& order) {
   const auto row = [&page](std::string_view name, const BondOrder::Count& count, std::string_view what) {
     if (count.spheres > 0)
@@ -227,6 +249,7 @@ void write_walls(Page& page, const Report& report) {
     write_profile(page, *walls, escaped(name_of(report.packing.scene.unit)));
     page.raw("</table></div></div>\n");
   }
+  if (report.measured.column) write_column(page, *report.measured.column, report);
   if (!order) return;
   page.add(
       "<p>A sphere counts as crystalline where its neighbours lie as those of its neighbours do: at least {} "

@@ -2,11 +2,17 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <string>
 #include <vector>
+
+#include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
 #include "report/page.hpp"
+#include "report/size_summary.hpp"
+#include "scene/size_kinds.hpp"
 #include "viewer/html.hpp"
 
 namespace bernal {
@@ -72,28 +78,62 @@ std::string asked_cell(const SizeDistribution* asked, double share) {
 }
 
 void write_classes(Page& page, const Sizes& sizes, const std::map<double, std::uint64_t>& classes,
-                   const SizeDistribution* asked) {
-  double volume = 0;
-  for (const auto& [size, count] : classes) volume += sizes.volume(size) * static_cast<double>(count);
+                   const SizeDistribution* asked, const Classes* stated) {
+  double volume = 0, mass = 0;
+  const auto density = [&](double size) {
+    const auto k = stated ? class_of(*stated, size) : std::nullopt;
+    return k && !stated->material_densities.empty() ? stated->material_densities[*k] : 0.0;
+  };
+  for (const auto& [size, count] : classes) {
+    volume += sizes.volume(size) * static_cast<double>(count);
+    mass += density(size) * sizes.volume(size) * static_cast<double>(count);
+  }
+  const bool has_names = stated && !stated->names.empty();
   page.add(
-      "<table><tr><th>{}</th><th class=\"n\">spheres</th><th class=\"n\">% of the number</th>{}"
-      "<th class=\"n\">% of the {}</th>{}</tr>\n",
-      sizes.word, head_of_asked(asked), sizes.volume_word(), head_of_asked(asked));
+      "<table><tr>{}<th>{}</th><th class=\"n\">spheres</th><th class=\"n\">% of the number</th>{}"
+      "<th class=\"n\">% of the {}</th>{}{}</tr>\n",
+      has_names ? "<th>name</th>" : "", sizes.word, head_of_asked(asked), sizes.volume_word(),
+      head_of_asked(asked), mass > 0 ? "<th class=\"n\">% of the mass</th>" : "");
   for (const auto& [size, count] : classes) {
     const auto n = static_cast<double>(count);
     constexpr double same = 1e-12;
     const double radius = size / sizes.factor;
     const double share =
         asked ? asked->cumulative(radius * (1 + same)) - asked->cumulative(radius * (1 - same)) : 0;
+    const auto k = stated ? class_of(*stated, size) : std::nullopt;
     page.add(
-        "<tr><td>{:.6g}</td><td class=\"n\">{}</td><td class=\"n\">{:.2f}</td>{}<td "
-        "class=\"n\">{:.2f}</td>{}</tr>\n",
-        size, grouped(count), 100 * n / static_cast<double>(sizes.values.size()), asked_cell(asked, share),
+        "<tr>{}<td>{:.6g}</td><td class=\"n\">{}</td><td class=\"n\">{:.2f}</td>{}<td "
+        "class=\"n\">{:.2f}</td>{}{}</tr>\n",
+        has_names ? fmt::format("<td>{}</td>", k ? escaped(stated->names[*k]) : "") : "", size,
+        grouped(count), 100 * n / static_cast<double>(sizes.values.size()), asked_cell(asked, share),
         100 * sizes.volume(size) * n / volume,
         asked_cell(asked,
-                   asked ? share * std::pow(radius, sizes.dimension) / asked->moment(sizes.dimension) : 0));
+                   asked ? share * std::pow(radius, sizes.dimension) / asked->moment(sizes.dimension) : 0),
+        mass > 0 ? fmt::format("<td class=\"n\">{:.2f}</td>",
+                               100 * density(size) * sizes.volume(size) * n / mass)
+                 : "");
   }
   page.raw("</table>\n");
+}
+
+/// Diameters with a tenth, half and nine tenths of the volume below, and how near a law comes to those given.
+void write_percentiles(Page& page, const Report& report, const Sizes& sizes) {
+  const Scene& scene = report.packing.scene;
+  const std::string unit = escaped(name_of(scene.unit));
+  if (!report.measured.sizes) return;
+  std::vector<std::string> packed, asked;
+  for (const auto& [share, realised, of_asked] : report.measured.sizes->volume_quantiles) {
+    packed.push_back(fmt::format("D{:.0f} {:.4g}", 100 * share, 2 * realised));
+    asked.push_back(fmt::format("{:.4g}", 2 * of_asked));
+  }
+  page.add("<p>By {} of what was packed: {} {}; asked {}.</p>\n", sizes.volume_word(),
+           fmt::join(packed, ", "), unit, fmt::join(asked, ", "));
+  if (!report.asked) return;
+  std::vector<std::string> fits;
+  for (const SizeSummary::Fit& fit : summary_of(scene, *report.asked).fit) fits.push_back(fit_in_words(fit));
+  if (!fits.empty())
+    page.add("<p>The law that was taken for the percentiles has, {} and against what was given, {}.</p>\n",
+             basis_of_fit(scene), fmt::join(fits, ", "));
 }
 
 /// By tenths of the volume: requested and realised shares.
@@ -164,7 +204,7 @@ void write_sizes(Page& page, const Report& report) {
   }
   if (classes.size() <= most_classes) {
     page.add("<p>In {}.</p>\n", unit);
-    write_classes(page, sizes, classes, report.asked);
+    write_classes(page, sizes, classes, report.asked, std::get_if<Classes>(&report.packing.scene.sizes));
   } else {
     SizeHistogram histogram{sizes.values,
                             sizes.dimension,
@@ -184,6 +224,7 @@ void write_sizes(Page& page, const Report& report) {
     if (report.measured.sizes && !report.measured.sizes->shares.empty())
       write_shares(page, sizes, report.measured.sizes->shares);
   }
+  write_percentiles(page, report, sizes);
   if (report.measured.sizes) write_comparison(page, *report.measured.sizes, sizes);
 }
 

@@ -22,6 +22,7 @@ BERNAL_KEYS(BedProfile::Layer, from, to, packing_fraction)
 BERNAL_KEYS(Bounds<3>, lower, upper)
 BERNAL_KEYS(BondOrder, all, mean_q6, q6_error, near_wall, core)
 BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
+BERNAL_KEYS(ColumnProfile::Layer, from, to, porosity)
 BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
 BERNAL_KEYS(LocalPacking::Quantile, share, packing_fraction)
 BERNAL_KEYS(PoreSizes::Quantile, share, distance)
@@ -102,9 +103,13 @@ static void to_json(Json& json, const BedProfile& bed) {
           {"angle_of_friction", bed.rest.friction}};
 }
 
+static Json minimum_json(const std::optional<WallProfile::Minimum>& least, double diameter) {
+  if (!least) return {};
+  return {{"z", least->z}, {"z_over_diameter", least->z / diameter}, {"porosity", least->porosity}};
+}
+
 /// Without its layers.
 static void to_json(Json& json, const WallProfile& profile) {
-  const auto& least = profile.first_minimum;
   const auto& segregation = profile.segregation;
   json = {{"mean_diameter", profile.mean_diameter},
           {"mean_porosity", profile.mean_porosity},
@@ -113,14 +118,25 @@ static void to_json(Json& json, const WallProfile& profile) {
           {"core_phi_error", profile.core_packing_error},
           {"core_from", profile.core_from},
           {"has_core", profile.has_core},
-          {"first_minimum", least ? Json{{"z", least->z},
-                                         {"z_over_diameter", least->z / profile.mean_diameter},
-                                         {"porosity", least->porosity}}
-                                  : Json()},
+          {"first_minimum", minimum_json(profile.first_minimum, profile.mean_diameter)},
           {"segregation", segregation ? Json{{"spheres_near_wall", segregation->spheres},
                                              {"mean_volume_ratio", segregation->volume_ratio},
                                              {"error", segregation->error}}
                                       : Json()}};
+}
+
+/// Without its layers and those of the side.
+static void to_json(Json& json, const ColumnProfile& column) {
+  const double d = column.mean_diameter;
+  json = {{"axis", column.axis},
+          {"mean_diameter", d},
+          {"top", column.top},
+          {"has_lid", column.has_lid},
+          {"floor_minimum", minimum_json(column.floor_minimum, d)},
+          {"lid_minimum", minimum_json(column.lid_minimum, d)},
+          {"side", Json()}};
+  if (const auto& side = column.side)
+    json["side"] = {{"from", side->from}, {"to", side->to}, {"profile", side->profile}};
 }
 
 static void to_json(Json& json, const RadialDistribution& radial) {
@@ -137,7 +153,8 @@ static void to_json(Json& json, const RadialDistribution& radial) {
           {"peaks", peaks},
           {"r", radial.r},
           {"g", radial.g},
-          {"error", radial.error}};
+          {"error", radial.error},
+          {"share", radial.share}};
 }
 
 /// Without per-sphere data.
@@ -190,6 +207,7 @@ static void to_json(Json& json, const SizeComparison& sizes) {
           {"drawn", sizes.drawn},
           {"shares", sizes.shares},
           {"quantiles", sizes.quantiles},
+          {"volume_quantiles", sizes.volume_quantiles},
           {"classes", sizes.classes}};
 }
 
@@ -203,6 +221,7 @@ Json figures_of(const std::optional<SizeComparison>& sizes) {
           {"chi_squared_p_value", sizes->chi_squared_p_value},
           {"mean_volume_ratio", sizes->volume_ratio},
           {"shares", sizes->shares},
+          {"volume_quantiles", sizes->volume_quantiles},
           {"drawn", sizes->drawn}};
 }
 
@@ -236,6 +255,7 @@ Json measured_figures(const Measurements& measured) {
                {"chambers", measured.chambers},
                {"bed", measured.bed},
                {"walls", measured.walls},
+               {"column", measured.column},
                {"local_packing", measured.local},
                {"structure_factor", measured.structure},
                {"pores", measured.pores},
@@ -250,6 +270,8 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
                {"phi", measured.packing_fraction},
                domain_json(packing.domain)};
   json.update(contacts_json(measured, measured.contacts));
+  json["fabric"] = measured.of_contacts.fabric;
+  json["spheres_by_contacts"] = measured.of_contacts.spheres_by_contacts();
   json["held_from_gap"] = measured.held_from;
   json["by_gap"] = Json::array();
   for (const Contacts& contacts : measured.by_gap)
@@ -262,6 +284,11 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   if (measured.bed) json["bed"]["layers"] = measured.bed->layers;
   json["walls"] = measured.walls;
   if (measured.walls) json["walls"]["layers"] = measured.walls->layers;
+  json["column"] = measured.column;
+  if (const auto& column = measured.column) {
+    json["column"]["along"] = column->along;
+    if (column->side) json["column"]["side"]["profile"]["layers"] = column->side->profile.layers;
+  }
   json["local_packing"] = measured.local;
   json["structure_factor"] = measured.structure;
   if (const auto& factor = measured.structure)

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "bernal/core/error.hpp"
+#include "domain/revolved_surface.hpp"
 #include "geometry/changes.hpp"
 #include "geometry/edges.hpp"
 
@@ -70,6 +71,8 @@ Mesh drawable(const Sphere& sphere) {
 }
 
 Mesh drawable(const Mesh& mesh) { return mesh; }
+
+Mesh drawable(const Revolved& revolved) { return surface_of(revolved, rim_points); }
 
 Mesh drawable(const Polygon&) {
   throw Error(ErrorCode::bad_argument, "a polygon lies in the plane and has no surface");

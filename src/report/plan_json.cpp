@@ -4,6 +4,7 @@
 #include "bernal/report/json.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "report/describe.hpp"
+#include "report/size_summary.hpp"
 
 namespace bernal {
 
@@ -36,12 +37,27 @@ std::string plan_as_json(const Plan& plan) {
     outputs.push_back({{"format", output.format},
                        {"file", plain_text(output.file.string())},
                        {"unit", name_of(output.unit.value_or(Unit::m))}});
+  const SizeSummary summary = summary_of(plan.scene, *plan.radii);
+  ordered_json shares = ordered_json::array(), percentiles = ordered_json::array(), law = ordered_json::array();
+  for (const SizeSummary::Share& share : summary.shares)
+    shares.push_back({{"size", share.size},
+                      {"name", share.name.empty() ? ordered_json() : ordered_json(share.name)},
+                      {"number", share.number},
+                      {"volume", share.volume},
+                      {"mass", share.mass ? ordered_json(*share.mass) : ordered_json()}});
+  for (const auto& [share, by_number, by_volume] : summary.percentiles)
+    percentiles.push_back({{"share", share}, {"by_number", by_number}, {"by_volume", by_volume}});
+  for (const auto& [name, share, given, fitted] : summary.fit)
+    law.push_back({{"name", name}, {"share", share}, {"given", given}, {"fitted", fitted}});
   const ordered_json json = {
       {"unit", name_of(plan.scene.unit)},
       {"container", container},
       {"spheres",
        {{"target", describe_target(plan)},
         {"sizes", describe_sizes(plan.scene)},
+        {"shares", shares},
+        {"percentiles", percentiles},
+        {"law", law},
         {"gap", plan.scene.gap},
         {"wall_gap", plan.scene.wall_gap}}},
       {"accuracy", {{"walls", name_of(plan.scene.walls)}, {"overlap", plan.scene.overlap}}},

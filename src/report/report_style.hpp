@@ -6,9 +6,9 @@ namespace bernal {
 /// The style sheet of report.html, light and dark.
 inline constexpr std::string_view report_style = R"css(
 :root { color-scheme: light dark; --ink:#1d2733; --dim:#5d6b7a; --rule:#dde3e9; --page:#ffffff; --card:#f5f7f9;
-  --first:#2f8ba3; --second:#3a3f8f; --yes:#14804a; --no:#c0322b; }
+  --first:#2f8ba3; --second:#3a3f8f; --yes:#14804a; --short:#9a6700; --no:#c0322b; }
 @media (prefers-color-scheme: dark) { :root { --ink:#e4e9ee; --dim:#94a2b1; --rule:#2c3743; --page:#10161d;
-  --card:#18212b; --first:#5cc6c4; --second:#a9a7f0; --yes:#4cc38a; --no:#ff7b72; } }
+  --card:#18212b; --first:#5cc6c4; --second:#a9a7f0; --yes:#4cc38a; --short:#e3b341; --no:#ff7b72; } }
 * { box-sizing:border-box; }
 body { margin:0; background:var(--page); color:var(--ink); font:16px/1.5 system-ui,sans-serif; }
 main { max-width:1120px; margin:0 auto; padding:32px 24px 64px; }
@@ -20,9 +20,10 @@ p { margin:6px 0 12px; max-width:75ch; }
 .card { background:var(--card); border-radius:10px; padding:14px 16px; }
 .card b { display:block; font-size:26px; font-weight:650; line-height:1.25; font-variant-numeric:tabular-nums; }
 .card small { display:block; line-height:1.35; margin-top:4px; }
-.yes { color:var(--yes); } .no { color:var(--no); }
+.yes { color:var(--yes); } .short { color:var(--short); } .no { color:var(--no); }
 .statement { border-left:4px solid var(--yes); background:var(--card); padding:12px 16px; border-radius:0 10px 10px 0;
   max-width:none; }
+.statement.short { border-color:var(--short); color:var(--ink); } .statement.short b { color:var(--short); }
 .statement.failed { border-color:var(--no); }
 .picture svg { display:block; width:100%; max-height:min(78vh,760px); margin:20px auto; }
 .pair { display:grid; grid-template-columns:repeat(auto-fit,minmax(min(440px,100%),1fr)); gap:28px; align-items:start; }

@@ -80,6 +80,7 @@ SceneSchema basic_definitions() {
       {"lines", array_of(refers_to("points"), 0)},
       {"coordinates", array_of(refers_to("coordinate"), 1)},
       {"lengths", array_of(refers_to("length"), 1)},
+      {"lengths_from_zero", array_of(either({{"const", 0}}, refers_to("length")), 1)},
       {"shares", array_of(refers_to("positive"), 1)},
       {"amounts", array_of({{"anyOf", {SceneSchema{{"const", 0}}, refers_to("positive")}}}, 1)},
       {"axes", axes},
@@ -108,9 +109,14 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "flag")
     return key.min > 0 ? SceneSchema{{"const", true}} : SceneSchema{{"type", "boolean"}};
   if (key.type == "word") return one_of_words(key);
-  if (key.type == "distribution") return refers_to(key.name);
+  if (key.type == "distribution" && key.words.empty()) return refers_to(key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
-  SceneSchema value = key.type == "number" || key.type == "integer" ? within_range(key) : refers_to(key.type);
+  const bool from_zero = key.type == "lengths" && key.min == 0;
+  SceneSchema value = key.type == "number" || key.type == "integer"
+                          ? within_range(key)
+                          : refers_to(from_zero                    ? "lengths_from_zero"
+                                      : key.type == "distribution" ? key.name
+                                                                   : key.type);
   if (const auto text = measured_text(key.quantity); text && key.type == "number")
     value = either(std::move(value), *text);
   if (key.words.empty()) return value;
@@ -200,10 +206,9 @@ void define_group(const ReferenceGroup& group, const std::string& name, SceneSch
   if (is_size) choice.push_back(refers_to("length"));
   for (const ReferenceTable& given : group.tables) {
     std::optional<ReferenceTable> table = given;
-    const bool needed = std::ranges::any_of(
-        given.keys, [](const ReferenceKey& key) { return key.is_diameter && key.required; });
-    const bool in_choice = !given.choices.empty();
-    if (name == "radius") table = needed && !in_choice ? std::nullopt : as_radii(given);
+    // Of percentiles two or more are needed, which this schema does not say.
+    const bool has_diameters = std::ranges::any_of(given.keys, &ReferenceKey::is_diameter);
+    if (name == "radius") table = has_diameters && given.choices.empty() ? std::nullopt : as_radii(given);
     if (!table) continue;
     const bool depends = std::ranges::any_of(
         given.keys, [](const ReferenceKey& key) { return key.is_diameter || key.type == "parts"; });

@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "domain/revolved_surface.hpp"
+
 #include "report/outline.hpp"
 
 namespace bernal {
@@ -72,6 +74,10 @@ std::vector<FlatLoop> cut_of(const Mesh& mesh, const SectionPlane& plane) {
 
 std::vector<FlatLoop> cut_of(const Box& box, const SectionPlane& plane) {
   return cut_of(drawable_mesh(box), plane);
+}
+
+std::vector<FlatLoop> cut_of(const Revolved& revolved, const SectionPlane& plane) {
+  return cut_of(surface_of(revolved, round_points), plane);
 }
 
 std::vector<FlatLoop> cut_of(const Polygon& polygon, const SectionPlane& plane) {

@@ -54,9 +54,15 @@ void write_headline(Page& page, const Report& report) {
   const Packing& packing = report.packing;
   const bool certified = report.certificate.certified;
   const double allowed_overlap = report.certificate.allowed_overlap;
+  const bool is_short = falls_short(packing.outcome);
+  if (is_short)
+    page.add("<p class=\"statement short\"><b>Not what was asked for.</b> The run ended as {}: {}.</p>\n",
+             name_of(packing.outcome), escaped(packing.reason));
   page.raw("<div class=\"cards\">\n");
   page.card(grouped(packing.spheres.size()), "Spheres",
-            fmt::format("{}: {}", name_of(packing.outcome), escaped(packing.reason)));
+            is_short ? "see above how the run ended"
+                     : fmt::format("{}: {}", name_of(packing.outcome), escaped(packing.reason)),
+            is_short ? "short" : "");
   page.card(fmt::format("{:.4f}", packing.packing_fraction()), "Packing fraction",
             fmt::format("the share of the {}’s {} that is sphere, so that its porosity is {:.4f}{}",
                         kind_of(packing.domain) == "periodic" ? "box" : "container", volume_word(packing),
@@ -74,7 +80,9 @@ void write_headline(Page& page, const Report& report) {
             : report.certificate.gap + report.certificate.wall_gap > 0
                 ? "every gap is kept, nothing sticks out; proven on the written file"
                 : "no overlap, nothing sticks out; proven on the written file",
-            certified ? "yes" : "no");
+            !certified ? "no"
+            : is_short ? "short"
+                       : "yes");
   page.card(seconds_text(packing.seconds), "Time",
             fmt::format("{} thread{}{}", packing.threads, packing.threads == 1 ? "" : "s",
                         packing.resumed == 0 ? ""
@@ -82,7 +90,10 @@ void write_headline(Page& page, const Report& report) {
                             ? "; went on from a checkpoint once"
                             : fmt::format("; went on from checkpoints {} times", packing.resumed)));
   page.raw("</div>\n");
-  page.add("<p class=\"statement{}\">{}</p>\n", certified ? "" : " failed",
+  page.add("<p class=\"statement{}\">{}</p>\n",
+           !certified ? " failed"
+           : is_short ? " short"
+                      : "",
            escaped(report.certificate.statement));
 }
 
@@ -264,9 +275,11 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
       "packings number give the same hash, whatever the number of threads, where C library and kind of "
       "processor are the same.</p>\n</main>\n",
       escaped(text_of(packing.program)), packing.seed, report.hash);
-  if (!pictures.view.empty()) write_view_program(page, pictures.view);
-  page.raw("</body></html>\n");
-  return std::move(page).finish();
+  std::string text = in_dimension(packing.spheres.dimension(), std::move(page).finish());
+  Page end;
+  if (!pictures.view.empty()) write_view_program(end, pictures.view);
+  end.raw("</body></html>\n");
+  return text + std::move(end).finish();
 }
 
 }  // namespace bernal

@@ -65,9 +65,12 @@ std::vector<NamedFile> files_and_digests(Scene& scene) {
   const auto* mesh = std::get_if<MeshFile>(&scene.container);
   std::vector<std::string> digests = mesh ? mesh->sha256 : std::vector<std::string>();
   digests.resize(mesh ? 1 + mesh->obstacles.size() : 0);
-  digests.push_back(scene.start.sha256.empty() ? std::string() : scene.start.sha256.front());
+  if (scene.start.file)
+    digests.push_back(scene.start.sha256.empty() ? std::string() : scene.start.sha256.front());
   std::vector<NamedFile> files;
-  for (fs::path* const file : files_named_in(scene)) files.push_back({*file, digests[files.size()]});
+  for (fs::path* const file : files_named_in(scene))
+    files.push_back({*file, files.size() < digests.size() ? digests[files.size()]
+                                                          : sha256_of_bytes(*content_given(scene, *file))});
   return files;
 }
 
@@ -113,11 +116,13 @@ std::vector<std::string> files_of_earlier_result(const fs::path& folder) {
 
 Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path& folder, bool with_mesh,
                    Manifest& manifest) {
-  Scene scene = packing.scene;
+  Scene named = packing.scene;
+  put_long_lists_beside(named);
+  Scene scene = named;
   scene.seed = packing.seed;
   const Manifest earlier = manifest_of(folder);
   for (auto& [file, sha256] : files_and_digests(scene)) {
-    const std::optional<std::string> given = content_given(packing.scene, file);
+    const std::optional<std::string> given = content_given(named, file);
     if (!given && stands_in(file, folder)) {
       const auto copy = earlier.find(file.filename().string());
       if (copy != earlier.end() && copy->second == sha256) manifest.insert(*copy);

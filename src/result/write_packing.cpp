@@ -32,7 +32,6 @@ namespace {
 /// Enough for curves that are smooth to the eye; `bernal measure` takes more.
 constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
 constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 10000;
-constexpr double waves_for_a_report = 2.5e7, wave_bins_for_a_report = 0.4;
 /// Of more spheres, cells and waves would take longer than many a packing; all cells of fewer already would,
 /// of which a sample says nearly as much.
 constexpr std::size_t most_for_a_report = 100'000, all_cells_for_a_report = 10'000, cells_for_a_report = 4000;
@@ -90,11 +89,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   const bool as_array = writes_array(packing, options);
   const std::filesystem::path spheres = staged.add(spheres_file_of(packing, options));
   write_spheres(spheres, packing.spheres, name_of(packing.scene.unit), as_array);
-  if (!as_array) {
-    OutputFile file(staged.add("spheres.vtp"));
-    write_vtp(file, packing.spheres, name_of(packing.scene.unit));
-    file.close();
-  }
+  const std::filesystem::path vtp = as_array ? std::filesystem::path() : staged.add("spheres.vtp");
   Certificate certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);
   go_on();
@@ -112,13 +107,16 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
                .local = {.most_spheres = most_for_a_report,
                          .all_of = all_cells_for_a_report,
                          .looked_at = cells_for_a_report},
-               .structure = {.bin = wave_bins_for_a_report,
-                             .work = waves_for_a_report,
-                             .most_spheres = most_for_a_report},
+               .structure = {.most_spheres = most_for_a_report},
                .pores = {.points = n > most_for_pores ? 0 : pore_points_for_a_report},
                .container = packing.container,
                .monitor = options.monitor});
   go_on();
+  if (!as_array) {
+    OutputFile file(vtp);
+    write_vtp(file, packing.spheres, name_of(packing.scene.unit), measured.of_contacts.coordination);
+    file.close();
+  }
   Manifest manifest;
   const std::string scene =
       scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);

@@ -106,8 +106,10 @@ Conclusion of_box(const Packing& packing, const SpheresInBox& in_box, const Repo
   const std::optional<Vector<dynamic>>& asked = in_box.task.target_edges;
   const std::size_t n = packing.spheres.size();
   const std::string account = report.account.empty() ? "" : " " + report.account;
-  const bool from_bed = in_box.task.container && target.is_open();
-  if (const std::size_t wanted = in_box.supply->wanted(); packing.spheres.size() < wanted && !from_bed)
+  const std::size_t wanted = in_box.supply->wanted();
+  // From a bed, or where there are no more places than these.
+  const bool as_many_as_fit = target.is_open() && (in_box.task.container || n < wanted);
+  if (n < wanted && !as_many_as_fit)
     return {end == StageEnd::full ? Outcome::full : Outcome::hit_limit,
             fmt::format("{}, packing fraction {:.4f}{}", some_placed(n, wanted), packing.packing_fraction(),
                         account)};
@@ -119,7 +121,7 @@ Conclusion of_box(const Packing& packing, const SpheresInBox& in_box, const Repo
   if (!report.missed.empty())
     return {Outcome::hit_limit, fmt::format("{}; {}", all_placed(n), report.missed)};
   if (end == StageEnd::hit_limit) return limit_reached(n);
-  if (from_bed) return of_open_target(packing, target.fill, end, ending);
+  if (as_many_as_fit) return of_open_target(packing, target.fill, end, ending);
   return {Outcome::converged, all_placed(n) + account};
 }
 

@@ -23,6 +23,7 @@
 #include "run/checkpoint_owner.hpp"
 #include "run/conclude.hpp"
 #include "run/exact_place.hpp"
+#include "run/run_largest.hpp"
 #include "run/run_record.hpp"
 #include "run/run_stages.hpp"
 #include "run/take_coats_off.hpp"
@@ -97,6 +98,7 @@ class Run {
       packing_.reason = "stopped by the user before the first sphere was placed";
       state_edges();
     }
+    packing_.reason = in_dimension(packing_.scene.dimension(), packing_.reason);
     packing_.seconds = record_.seconds();
   }
 
@@ -184,6 +186,7 @@ class Run {
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, supply->largest());
     supply->divide_by(frame_.scale);
+    task.frame = frame_;
     task.target.bed.above_ground /= frame_.scale;
     if (any_in_bed_)
       task.exact_place = [this](const Vector<3>& place, double r) { return exact_place_.near(place, r); };
@@ -324,7 +327,8 @@ class Run {
                                     : std::string();
     monitor_.report(
         {progress.stage, progress.done.value_or(share),
-         fmt::format("{} spheres, packing fraction {:.4f}{}", grouped(progress.spheres), fraction, overlap)});
+         in_dimension(scene_.dimension(), fmt::format("{} spheres, packing fraction {:.4f}{}",
+                                                      grouped(progress.spheres), fraction, overlap))});
   }
 
   const Plan& stated_;
@@ -352,6 +356,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
                 "spheres in \"slabs\" are packed into files, by bernal pack, and nobody holds them; leave "
                 "\"slabs\" out to have them all",
                 plan.scene.engine->locations.of("slabs"));
+  if (plan.scene.largest) return run_largest(plan, options);
   Packing packing = begin_packing(plan, options.seed, options.threads);
   packing.domain = plan.domain;
   packing.container = plan.container;

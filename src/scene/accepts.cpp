@@ -102,6 +102,8 @@ struct Rule {
   bool (*accepts)(const Value&);
   bool has_length = true;
 };
+/// Lengths of which some may be 0.
+const Rule lengths_from_zero = {"an array of lengths of at least 0", all<is_amount>};
 const std::map<Type, Rule> rules = {
     {Type::length,
      {"a positive length",
@@ -125,6 +127,10 @@ const std::map<Type, Rule> rules = {
     {Type::parts, {"an array of lengths and tables { distribution = … }", are_sizes, false}},
 };
 
+const Rule& rule_of(const Key& key) {
+  return key.type == Type::lengths && key.range.min == 0 ? lengths_from_zero : rules.at(key.type);
+}
+
 }  // namespace
 
 std::string expectation(const Key& key, const std::optional<Value>& given) {
@@ -138,7 +144,9 @@ std::string expectation(const Key& key, const std::optional<Value>& given) {
                               : fmt::format("a whole number from {:.0f} to {:.0f}", range.min, range.max);
   if (key.type == Type::names && !key.words.empty()) return fmt::format("an array of {}", words);
   if (key.type == Type::position && !key.words.empty()) return fmt::format("a point [x, y, z] or {}", words);
-  const Rule& rule = rules.at(key.type);
+  if (key.type == Type::distribution && !key.words.empty())
+    return fmt::format("{} or {}", rules.at(key.type).kind, words);
+  const Rule& rule = rule_of(key);
   if (given && has_endless_point(*given)) return fmt::format("{}, whose coordinates are finite", rule.kind);
   return given && rule.has_length && is_absurd(*given)
              ? fmt::format("{} from {} to {}", rule.kind, smallest_length, largest_length)
@@ -162,7 +170,7 @@ bool accepts(const Key& key, const Value& value) {
              return std::ranges::find(key.words, name) != key.words.end();
            });
   if (key.type == Type::position && !key.words.empty() && is_word()) return true;
-  if (key.type != Type::number) return rules.at(key.type).accepts(value);
+  if (key.type != Type::number) return rule_of(key).accepts(value);
   const auto* number = std::get_if<double>(&value);
   return number ? std::isfinite(*number) && key.range.contains(*number) : is_word();
 }

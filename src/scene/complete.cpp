@@ -7,6 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "scene/complete_sizes.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
@@ -228,7 +229,9 @@ void complete_stages(Scene& scene) {
   }
   require_end(scene);
   require_bed(scene);
-  if (!scene.draw && keeps_sizes) scene.draw = Draw::quantiles;
+  const auto* classes = std::get_if<Classes>(&scene.sizes);  // weighed out, and so met to a sphere
+  const bool is_weighed = classes && classes->basis == Basis::mass;
+  if (!scene.draw && (keeps_sizes || is_weighed)) scene.draw = Draw::quantiles;
 }
 
 /// Every output has a name of its own, and none of the result's.
@@ -328,6 +331,7 @@ bool StageTraits::works_in(const Scene& scene) const {
 }
 
 void complete(Scene& scene) {
+  complete_density(scene);
   for (const Entry* entry : schema::own_entries())
     check(*entry, &scene,
           {entry->name == "scene" ? "the scene" : fmt::format("[{}]", entry->name), scene.locations});
@@ -336,6 +340,7 @@ void complete(Scene& scene) {
   check(container, schema::options_of(std::as_const(scene.container)), section);
   if (container.complete) container.complete(schema::options_of(scene.container), scene, section);
   take_porosity(scene);
+  complete_list(scene);
   check_target(scene);
   if (!is_start_alone(scene))
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",

@@ -40,7 +40,7 @@ enum class Type {
   points,        ///< array of three [x, y] or more, a closed line
   lines,         ///< array of such
   coordinates,   ///< array of numbers in the scene's unit
-  lengths,       ///< array of lengths
+  lengths,       ///< array of lengths; of at least 0 where the range begins there
   shares,        ///< array of positive numbers
   amounts,       ///< array of numbers of at least 0
   axes,          ///< array of axes, counted from 0, each once
@@ -231,7 +231,7 @@ struct Entry {
   std::function<void(const void*, const Section&)> rule = {};
   /// Fills in what depends on the rest of the scene, where it is left out.
   std::function<void(void*, Scene&, const Section&)> complete = {};
-  /// Of a distribution that may stand in a "file": the keys that the file's columns are.
+  /// Of a distribution that may stand in a "file": the keys that the file's columns are, one or two.
   std::vector<std::string_view> columns = {};
   std::shared_ptr<const void> defaults = {};  ///< a struct as it is made
 

@@ -1,5 +1,6 @@
 #include "scene/given_files.hpp"
 
+#include <functional>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -20,6 +21,23 @@ const Spheres<dynamic>* spheres_given(const Scene& scene, const std::filesystem:
   return scene.start.packing && scene.start.file == name ? &scene.start.packing->spheres : nullptr;
 }
 
+/// Every list of the sizes, in their order.
+void for_each_list(SceneSizes& sizes, const std::function<void(ListedSizes&)>& visit) {
+  if (auto* list = std::get_if<ListedSizes>(&sizes)) visit(*list);
+  if (auto* mixture = std::get_if<Mixture>(&sizes))
+    for (SceneSizes& part : mixture->of) for_each_list(part, visit);
+}
+
+/// Of a list whose file has not been given its place in a folder.
+const ListedSizes* list_given(const SceneSizes& sizes, const std::filesystem::path& name) {
+  if (const auto* list = std::get_if<ListedSizes>(&sizes))
+    return !name.empty() && !name.has_parent_path() && list->beside == name ? list : nullptr;
+  if (const auto* mixture = std::get_if<Mixture>(&sizes))
+    for (const SceneSizes& part : mixture->of)
+      if (const ListedSizes* list = list_given(part, name)) return list;
+  return nullptr;
+}
+
 std::string as_off(const PolygonSurface& surface) {
   std::string text = fmt::format("OFF\n{} {} 0\n", surface.vertices.size(), surface.faces.size());
   const auto out = std::back_inserter(text);
@@ -28,11 +46,19 @@ std::string as_off(const PolygonSurface& surface) {
   return text;
 }
 
+void append_double(std::string& bytes, double number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+std::string as_npy(const std::vector<double>& values) {
+  std::string bytes = npy_header(values.size(), 0);
+  for (const double value : values) append_double(bytes, value);
+  return bytes;
+}
+
 std::string as_npy(const Spheres<dynamic>& spheres) {
   std::string bytes = npy_header(spheres.size(), spheres.x.size() + 1);
-  const auto append = [&](double number) {
-    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
-  };
+  const auto append = [&](double number) { append_double(bytes, number); };
   bytes.reserve(bytes.size() + spheres.size() * (spheres.x.size() + 1) * sizeof(double));
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     for (const auto& column : spheres.x) append(column[i]);
@@ -44,12 +70,13 @@ std::string as_npy(const Spheres<dynamic>& spheres) {
 }  // namespace
 
 bool is_given(const Scene& scene, const std::filesystem::path& name) {
-  return surface_given(scene, name) || spheres_given(scene, name);
+  return surface_given(scene, name) || spheres_given(scene, name) || list_given(scene.sizes, name);
 }
 
 std::optional<std::string> content_given(const Scene& scene, const std::filesystem::path& name) {
   if (const auto* surface = surface_given(scene, name)) return as_off(*surface);
   if (const auto* spheres = spheres_given(scene, name)) return as_npy(*spheres);
+  if (const auto* list = list_given(scene.sizes, name)) return as_npy(list->values);
   return {};
 }
 
@@ -60,7 +87,19 @@ std::vector<std::filesystem::path*> files_named_in(Scene& scene) {
     for (std::filesystem::path& file : mesh->obstacles) files.push_back(&file);
   }
   if (scene.start.file) files.push_back(&*scene.start.file);
+  for_each_list(scene.sizes, [&](ListedSizes& list) {
+    if (!list.beside.empty()) files.push_back(&list.beside);
+  });
   return files;
+}
+
+void put_long_lists_beside(Scene& scene) {
+  constexpr std::size_t most_in_scene = 1000;
+  int lists = 0;
+  for_each_list(scene.sizes, [&](ListedSizes& list) {
+    if (list.values.size() <= most_in_scene) return;
+    list.beside = ++lists == 1 ? "sizes.npy" : fmt::format("sizes-{}.npy", lists);
+  });
 }
 
 }  // namespace bernal

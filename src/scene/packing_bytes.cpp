@@ -18,6 +18,9 @@ static void archive(Archive& a, Cylinder& c) { a(c.base, c.axis, c.radius, c.hei
 static void archive(Archive& a, Sphere& sphere) { a(sphere.center, sphere.radius); }
 static void archive(Archive& a, ExactCorners& exact) { a(exact.scale, exact.high, exact.low); }
 static void archive(Archive& a, Polygon& polygon) { a(polygon.loops, polygon.inset); }
+static void archive(Archive& a, Revolved& revolved) {
+  a(revolved.base, revolved.axis, revolved.profile, revolved.inset);
+}
 static void archive(Archive& a, PolygonSurface& surface) { a(surface.vertices, surface.faces); }
 
 /// What is shared and does not change, or nothing.

@@ -50,12 +50,13 @@ void require_holes_inside(const Polygon& polygon, const Section& section) {
   }
 }
 
-void polygon_rule(const Polygon& polygon, const Section& section) {
+/// `corners`: the key that the outline stands under.
+void require_polygon(const Polygon& polygon, const Section& section, std::string_view corners) {
   if (polygon.loops.empty() || polygon.loops.front().empty())
     section.fail("",
-                 fmt::format("{} needs \"vertices\", an array of three points [x, y] or more, or a \"file\" "
+                 fmt::format("{} needs \"{}\", an array of three points [x, y] or more, or a \"file\" "
                              "of such",
-                             section.name));
+                             section.name, corners));
   const auto require = [&](const Polygon& lines, std::string_view key) {
     try {
       require_simple(lines);
@@ -64,9 +65,16 @@ void polygon_rule(const Polygon& polygon, const Section& section) {
                    fmt::format("{}: {}", section.name, error.what()));
     }
   };
-  require({{polygon.loops.front()}}, "vertices");
+  require({{polygon.loops.front()}}, corners);
   if (polygon.loops.size() > 1) require(polygon, "holes");
   require_holes_inside(polygon, section);
+}
+
+void polygon_rule(const Polygon& polygon, const Section& section) {
+  require_polygon(polygon, section, "vertices");
+}
+void extruded_rule(const Extruded& extruded, const Section& section) {
+  require_polygon(extruded.polygon, section, "polygon");
 }
 
 Key file_of_points() {
@@ -85,6 +93,21 @@ Entry polygon_entry() {
                     "polygons in it that are taken out; one in another is an island")},
        .choices = {{{"vertices"}, {"file"}}},
        .rule = rule(polygon_rule)});
+}
+
+Entry extruded_entry() {
+  return entry<Extruded>(
+      {.name = "extruded",
+       .help = "a polygon in the plane, straight up along z: a prism, with shafts where it has holes",
+       .keys = {key(Type::points, outline().inside(&Extruded::polygon), "polygon",
+                    "its corners in order, in either sense"),
+                file_of_points(),
+                key(Type::lines, holes().inside(&Extruded::polygon), "holes",
+                    "polygons in it that are taken out; one in another is an island"),
+                required(length(&Extruded::height, "height", "its length along z")),
+                key(Type::position, &Extruded::base, "base", "where the origin of the polygon lies")},
+       .choices = {{{"polygon"}, {"file"}}},
+       .rule = rule(extruded_rule)});
 }
 
 }  // namespace bernal::schema

@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -9,18 +8,19 @@
 
 namespace bernal {
 
-/// Two columns of numbers.
-struct TwoColumns {
-  std::array<const schema::Key*, 2> keys;  ///< say what they are called and what each number must be
-  Unit unit;                               ///< in which lengths are wanted
-  std::size_t most;                        ///< pairs
-  std::string_view if_more;                ///< what to do about more: "sum them up in fewer"
+/// One or two columns of numbers.
+struct WantedColumns {
+  std::vector<const schema::Key*> keys;  ///< say what they are called and what each number must be
+  Unit unit;                             ///< in which lengths are wanted
+  std::size_t most;                      ///< lines of numbers
+  std::string_view if_more;              ///< what to do about more: "sum them up in fewer"
 };
 
-/// Those of a text file: one pair a line, with a comma, semicolon or blank space between. Empty lines and
-/// what follows a # are passed over; a line "# unit: m" is heeded. One line of headings may stand before the
-/// first pair: where it names the columns the other way round, they are, and "size (m)" says a unit too.
-/// Throws Error{bad_scene} with file and line, or without a location if the file cannot be read at all.
-std::array<std::vector<double>, 2> read_columns(const std::filesystem::path& file, const TwoColumns& wanted);
+/// Those of a text file: one number a line, or one pair with a comma, semicolon or blank space between. Empty
+/// lines and what follows a # are passed over; a line "# unit: m" is heeded. One line of headings may stand
+/// before the first number: where it names two columns the other way round, they are, and "size (m)" says a
+/// unit too. One column may also be an array of NumPy's (.npy) of one dimension, in the wanted unit. Throws
+/// Error{bad_scene} with file and line, or without a location if the file cannot be read at all.
+std::vector<std::vector<double>> read_columns(const std::filesystem::path& file, const WantedColumns& wanted);
 
 }  // namespace bernal

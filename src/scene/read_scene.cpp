@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -259,16 +260,22 @@ class Reader {
                                  : std::ranges::find(entry.columns, key.name) != entry.columns.end();
   }
 
+  static constexpr std::size_t most_listed = 20'000'000;
+
   /// Puts what stands in the file in its place, so that the scene is whole without the file.
   void take_columns(const toml::node& node, const Entry& entry, const std::string& where, void* options,
                     Locations& locations) const {
     const std::string file = std::get<std::string>(read_value(node, *entry.find("file"), where));
     const Location at_file = locations.of("file");
     if (entry.columns.empty()) return take_points(file, entry, where, options, locations);
-    const std::array keys = {entry.find(entry.columns.at(0)), entry.find(entry.columns.at(1))};
+    std::vector<const Key*> keys;
+    for (const std::string_view column : entry.columns) keys.push_back(entry.find(column));
+    const bool is_list = keys.size() == 1;
     try {
       // More points are measurements, not a distribution; and a scene has to hold them.
-      const auto columns = read_columns(beside(at_file, file), {keys, unit_, 4096, "sum them up in fewer"});
+      const auto columns = read_columns(
+          beside(at_file, file), {keys, unit_, is_list ? most_listed : 4096,
+                                  is_list ? "take a histogram of them" : "sum them up in fewer"});
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
@@ -310,6 +317,12 @@ class Reader {
       const std::size_t n = choose(*table, "distribution", names_of(entries), named);
       schema::hold(sizes, n);
       read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
+      return sizes;
+    }
+    if (const auto* word = node.as_string();
+        word && std::ranges::find(key.words, word->get()) != key.words.end()) {
+      sizes = Constant{std::numeric_limits<double>::infinity()};  // as its member takes it
+      sizes.locations.whole = at(node.source());
       return sizes;
     }
     const Key length = {.name = key.name, .type = Type::length};

@@ -1,5 +1,6 @@
 #include "scene/scene_entries.hpp"
 
+#include "scene/scale_entry.hpp"
 #include "scene/toml_text.hpp"
 
 #include <algorithm>
@@ -55,22 +56,6 @@ Member fill() {
   return member.inside(&Scene::target);
 }
 
-/// The sizes, as radii or as diameters.
-Member sizes(bool diameters) {
-  Member member;
-  member.get = [diameters](const void* scene) -> std::optional<Value> {
-    const auto& of = *static_cast<const Scene*>(scene);
-    if (of.sizes_are_diameters != diameters || !of.draws()) return std::nullopt;
-    return std::vector<SceneSizes>{of.sizes};
-  };
-  member.set = [diameters](void* scene, const Value& value) {
-    auto& of = *static_cast<Scene*>(scene);
-    of.sizes_are_diameters = diameters;
-    of.sizes = std::get<std::vector<SceneSizes>>(value).front();
-  };
-  return member;
-}
-
 /// The same of what the scene says of a bed.
 template <class M>
 Member of_bed(M BedTarget::*member) {
@@ -84,6 +69,7 @@ Member of_start(M Start::*member) {
 }
 
 void spheres_rule(const Scene& scene, const Section& section) {
+  scale_rule(scene, section);
   for (const std::string_view amount : {"mass", "bulk_density"})
     if (!scene.material_density && (amount == "mass" ? scene.target.mass : scene.target.bulk_density))
       section.fail(amount,
@@ -266,8 +252,9 @@ const Entry& spheres_entry() {
                              number(&Scene::material_density, "material_density",
                                     "of the spheres themselves, in kg/m3: 2500 is glass, 7850 steel",
                                     above(0, largest_length))),
-                 key(Type::distribution, sizes(false), "radius", "lengths are radii"),
-                 key(Type::distribution, sizes(true), "diameter", "lengths are diameters"),
+                 size_key(false),
+                 size_key(true),
+                 scale_key(),
                  of_quantity(Quantity::length,
                              number(&Scene::gap, "gap",
                                     "least distance between the surfaces of two spheres, and of a sphere "
@@ -413,7 +400,11 @@ const std::vector<Entry>& container_entries() {
            .choices = {{{"size"}, {"edge"}, {}}},
            .rule = rule(periodic_rule),
            .complete = completion(complete_periodic)}),
-      polygon_entry()};
+      polygon_entry(),
+      cone_entry(),
+      tube_entry(),
+      lathed_entry(),
+      extruded_entry()};
   return all;
 }
 

@@ -20,6 +20,10 @@ const std::vector<Entry>& container_entries();
 const std::vector<Entry>& size_entries();
 const std::vector<Entry>& engine_entries();
 Entry polygon_entry();
+Entry cone_entry();
+Entry tube_entry();
+Entry lathed_entry();
+Entry extruded_entry();
 
 /// What stands for a key that a distribution has not but other programs have, "; write …"; empty where
 /// nothing is known of it. `number` is what the table gives to a key.

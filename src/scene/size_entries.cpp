@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <initializer_list>
 
 #include <fmt/format.h>
 
 #include "scene/scene_entries.hpp"
+#include "scene/size_kinds.hpp"
+#include "scene/size_rules.hpp"
 
 namespace bernal::schema {
 namespace {
@@ -33,26 +35,22 @@ void lognormal_rule(const Lognormal& of, const Section& section) {
 
 using Numbers = std::function<std::optional<double>(std::string_view)>;
 
-/// Of m = exp(ln median + sigma²/2) and s² = m² (exp(sigma²) - 1).
 std::string instead_in_lognormal(std::string_view key, const Numbers& number) {
-  if (key == "d50") return "; that of a sieve analysis is the \"median\" with basis = \"volume\"";
+  if (key == "d50")
+    return "; that of a sieve analysis is the \"median\" with basis = \"volume\", and with other percentiles "
+           "distribution = \"percentiles\"";
   if (key == "mu") return "; the mean of the logarithm, mu, is that of the \"median\", exp(mu)";
-  const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
-    return std::ranges::find(names, key) != names.end();
-  };
-  if (!is_one_of({"mean", "sd", "std", "stdev", "std_dev", "standard_deviation", "variance", "cv"}))
-    return {};
-  const std::string formulas =
-      "; of a mean m and a standard deviation s of the size: median = m / sqrt(1 + (s/m)^2), sigma = "
-      "sqrt(ln(1 + "
-      "(s/m)^2))";
-  std::optional<double> mean = number("mean"), deviation = number("sd");
-  for (const std::string_view other : {"std", "stdev", "std_dev", "standard_deviation"})
-    if (!deviation) deviation = number(other);
-  if (!mean || !deviation || !(*mean > 0) || !(*deviation > 0)) return formulas;
-  const double spread = 1 + std::pow(*deviation / *mean, 2);
-  return formulas + fmt::format("; here median = {:.6g}, sigma = {:.6g}", *mean / std::sqrt(spread),
-                                std::sqrt(std::log(spread)));
+  for (const std::string_view same : {"std", "stdev", "std_dev", "standard_deviation"})
+    if (key == same)
+      return "; the standard deviation of the size is \"sd\", beside \"mean\"; that of its logarithm \"sigma\"";
+  const bool is_variance = key == "variance";
+  if (!is_variance && key != "cv") return {};
+  const std::optional<double> mean = number("mean"), given = number(key);
+  std::string text = is_variance ? "; write its square root, the standard deviation, as \"sd\" beside \"mean\""
+                                 : "; write \"sd\", cv times the mean, beside \"mean\"";
+  if (mean && given && *mean > 0 && *given > 0)
+    text += fmt::format("; here sd = {:.6g}", is_variance ? std::sqrt(*given) : *given * *mean);
+  return text;
 }
 
 std::string instead_in_normal(std::string_view key, const Numbers&) {
@@ -61,22 +59,12 @@ std::string instead_in_normal(std::string_view key, const Numbers&) {
   return key == "mu" ? "; did you mean \"mean\"?" : "";
 }
 
-void one_for_each(std::string_view key, std::size_t given, std::string_view of, std::size_t count,
-                  const Section& section) {
-  if (given != count)
-    section.refuse(key, fmt::format("must have one number for each of \"{}\", but there are {} for {}", of,
-                                    given, count));
-}
-
-void all_differ(std::string_view key, std::vector<double> values, const Section& section) {
-  std::ranges::sort(values);
-  if (const auto twice = std::ranges::adjacent_find(values); twice != values.end())
-    section.refuse(key, fmt::format("must differ, but {} is there twice", *twice));
-}
-
 void classes_rule(const Classes& of, const Section& section) {
   one_for_each("shares", of.shares.size(), "values", of.values.size(), section);
   all_differ("values", of.values, section);
+  if (!of.material_densities.empty())
+    one_for_each("material_densities", of.material_densities.size(), "values", of.values.size(), section);
+  if (!of.names.empty()) one_for_each("names", of.names.size(), "values", of.values.size(), section, "name");
 }
 
 void table_rule(const Tabulated& of, const Section& section) {
@@ -84,30 +72,6 @@ void table_rule(const Tabulated& of, const Section& section) {
   all_differ("x", of.x, section);
   if (of.x.size() < 2) section.refuse("x", "must have two sizes or more");
   if (std::ranges::max(of.density) == 0) section.refuse("density", "must not be 0 everywhere");
-}
-
-void sieve_rule(const Sieve& of, const Section& section) {
-  one_for_each("passing", of.passing.size(), "sizes", of.sizes.size(), section);
-  all_differ("sizes", of.sizes, section);
-  if (of.sizes.size() < 2) section.refuse("sizes", "must have two sieves or more");
-  std::vector<std::pair<double, double>> curve;
-  for (std::size_t i = 0; i < of.sizes.size(); ++i) curve.emplace_back(of.sizes[i], of.passing[i]);
-  std::ranges::sort(curve);
-  for (std::size_t i = 1; i < curve.size(); ++i)
-    if (curve[i].second < curve[i - 1].second)
-      section.refuse("passing",
-                     fmt::format("must not fall with the size, but {} passes {} and only {} passes "
-                                 "{}; is it what each sieve retains?",
-                                 curve[i - 1].second, curve[i - 1].first, curve[i].second, curve[i].first));
-  if (curve.front().second != 0)
-    section.refuse("passing", fmt::format("must begin at 0, but {} passes the finest sieve, {}; add the size "
-                                          "that no sphere is below, with 0",
-                                          curve.front().second, curve.front().first));
-  if (curve.back().second != 1 && curve.back().second != 100)
-    section.refuse("passing",
-                   fmt::format("must end at 100 (per cent) or 1, but {} passes the coarsest sieve, "
-                               "{}; add the size that no sphere is above",
-                               curve.back().second, curve.back().first));
 }
 
 void mixture_rule(const Mixture& of, const Section& section) {
@@ -123,8 +87,48 @@ Key diameter(Member member, Text name, Text help) {
 
 template <class T>
 Key basis(Basis T::*member) {
-  return word(member, "basis", "what shares and densities count: spheres or their volume",
-              {"number", "volume"});
+  return word(member, "basis",
+              "what shares and densities count: spheres, their volume or their mass, which is the same for one "
+              "material",
+              {"number", "volume", "mass"});
+}
+
+/// Lengths of which some may be 0.
+Key lengths_from_zero(Member member, Text name, Text help) {
+  return key(Type::lengths, std::move(member), name, help, {0});
+}
+
+std::vector<Key> percentile_keys() {
+  static constexpr std::array<std::string_view, named_percentiles.size()> help = {
+      "3 % of the basis lies below", "5 %", "10 %", "16 %", "20 %", "25 %", "30 %", "half of it", "60 %",
+      "70 %", "75 %", "80 %", "84 %", "90 %", "95 %", "97 %", "99 %"};
+  std::vector<Key> keys;
+  for (std::size_t k = 0; k < help.size(); ++k) {
+    keys.push_back(length(named_percentiles[k].member, named_percentiles[k].name, help[k]));
+    keys.back().is_diameter = true;
+  }
+  return keys;
+}
+
+/// Of a list: the values, unless a writer has put them into a file.
+Member listed_values() {
+  Member member(&ListedSizes::values);
+  member.get = [](const void* list) -> std::optional<Value> {
+    const auto& of = *static_cast<const ListedSizes*>(list);
+    return of.beside.empty() ? value_of(of.values) : std::nullopt;
+  };
+  return member;
+}
+
+/// The name of that file, which is only written: a reader takes the values.
+Key listed_file() {
+  Key made = required(key(Type::file, {}, "file",
+                          "one column of sizes, as text or as an array of NumPy's (.npy)"));
+  made.member.get = [](const void* list) -> std::optional<Value> {
+    const auto& beside = static_cast<const ListedSizes*>(list)->beside;
+    return beside.empty() ? std::nullopt : std::optional<Value>(beside.string());
+  };
+  return made;
 }
 
 Key file(std::string_view help) { return required(key(Type::file, {}, "file", help)); }
@@ -158,7 +162,10 @@ const std::vector<Entry>& size_entries() {
            .keys = {required(key(Type::lengths, &Classes::values, "values", "the sizes, each once")),
                     required(key(Type::shares, &Classes::shares, "shares",
                                  "how much there is of each, in any scale")),
-                    basis(&Classes::basis)},
+                    basis(&Classes::basis),
+                    key(Type::shares, &Classes::material_densities, "material_densities",
+                        "of each class in kg/m^3, where they are not of one material"),
+                    key(Type::names, &Classes::names, "names", "of each class, for reports")},
            .rule = rule(classes_rule)}),
       entry<Uniform>({.name = "uniform",
                       .help = "every size between two limits equally often",
@@ -185,13 +192,18 @@ const std::vector<Entry>& size_entries() {
                                          number(&Lognormal::sigma, "sigma",
                                                 "standard deviation of the logarithm", above(0, 5)))),
                     basis(&Lognormal::basis),
+                    required(length(&Lognormal::mean, "mean", "of the size, of the basis, before any cut")),
+                    required(of_quantity(
+                        Quantity::length,
+                        length(&Lognormal::sd, "sd",
+                               "standard deviation of the size, of the basis, before any cut"))),
                     diameter(&Lognormal::d43, "d43",
                              "volume-weighted mean diameter <d^4>/<d^3>, before any cut"),
                     diameter(&Lognormal::d32, "d32",
                              "surface-weighted mean diameter <d^3>/<d^2>, before any cut"),
                     length(&Lognormal::min, "min", "cut off below"),
                     length(&Lognormal::max, "max", "cut off above")},
-           .choices = {{{"median", "sigma", "basis"}, {"d43", "d32"}}},
+           .choices = {{{"median", "sigma", "basis"}, {"mean", "sd", "basis"}, {"d43", "d32"}}},
            .rule = rule(lognormal_rule)}),
       entry<Tabulated>(
           {.name = "table",
@@ -206,11 +218,17 @@ const std::vector<Entry>& size_entries() {
       entry<Sieve>(
           {.name = "sieve",
            .help = "a sieve analysis by mass; straight between sieves over the logarithm of the size",
-           .keys = {required(key(Type::lengths, &Sieve::sizes, "sizes", "the openings, in any order")),
+           .keys = {required(lengths_from_zero(&Sieve::sizes, "sizes",
+                                               "the openings, in any order; 0 is the pan")),
                     required(key(Type::amounts, &Sieve::passing, "passing",
                                  "what passes, from 0 to 100 (or to 1)")),
-                    file("two columns, sizes and passing")},
-           .choices = {{{"sizes", "passing"}, {"file"}}},
+                    required(key(Type::amounts, &Sieve::retained, "retained",
+                                 "what lies on each sieve, in any scale; where the sizes fall, one more is "
+                                 "what is in the pan")),
+                    file("two columns, sizes and passing"),
+                    length(&Sieve::pan, "pan",
+                           "what is in the pan is this large at least; if absent half of the finest sieve")},
+           .choices = {{{"sizes", "passing"}, {"sizes", "retained"}, {"file"}}},
            .rule = rule(sieve_rule),
            .columns = {"sizes", "passing"}}),
       entry<RosinRammler>(
@@ -240,6 +258,45 @@ const std::vector<Entry>& size_entries() {
                                  "how much there is of each, in any scale")),
                     basis(&Mixture::basis)},
            .rule = rule(mixture_rule)}),
+      entry<Percentiles>(
+          {.name = "percentiles",
+           .help = "D10, D50, D90 and the like, and the law that goes through them, or nearest to them",
+           .keys = joined(percentile_keys(),
+                          {word(&Percentiles::law, "law",
+                                "lognormal, rosin_rammler, normal: fitted, of three or more not exactly; "
+                                "through: a curve exactly through them, straight over the logarithm of the "
+                                "size",
+                                {"lognormal", "rosin_rammler", "normal", "through"}),
+                           basis(&Percentiles::basis),
+                           length(&Percentiles::min, "min",
+                                  "cut off below; of \"through\" the smallest: if absent, where its first "
+                                  "straight line ends"),
+                           length(&Percentiles::max, "max",
+                                  "cut off above; of \"through\" the largest: if absent, where its last "
+                                  "straight line ends")}),
+           .rule = rule(percentiles_rule)}),
+      entry<Histogram>(
+          {.name = "histogram",
+           .help = "what is in each bin between two edges, evenly over the size",
+           .keys = {required(lengths_from_zero(&Histogram::edges, "edges",
+                                               "the limits of the bins, ascending: one more than bins")),
+                    required(key(Type::amounts, &Histogram::counts, "counts",
+                                 "how many spheres are in each, in any scale")),
+                    required(key(Type::amounts, &Histogram::masses, "masses",
+                                 "the mass, or volume, that is in each, in any scale"))},
+           .choices = {{{"counts"}, {"masses"}}},
+           .rule = rule(histogram_rule)}),
+      entry<ListedSizes>(
+          {.name = "list",
+           .help = "sizes one by one, such as measured ones",
+           .keys = {required(key(Type::lengths, listed_values(), "values", "the sizes, in any order")),
+                    listed_file(),
+                    word(&ListedSizes::draw, "draw",
+                         "each: every one exactly once, so that there are as many spheres; resample: drawn "
+                         "from them",
+                         {"each", "resample"})},
+           .choices = {{{"values"}, {"file"}}},
+           .columns = {"values"}}),
   });
   return all;
 }

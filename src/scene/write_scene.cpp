@@ -150,9 +150,10 @@ void write_scene(const Scene& scene, const std::filesystem::path& file) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   StagedFolder staged(folder);
   Scene named = scene;
+  put_long_lists_beside(named);
   for (const std::filesystem::path* const name : files_named_in(named))
-    if (const auto content = content_given(scene, *name)) staged.write(name->filename().string(), *content);
-  staged.write(file.filename().string(), scene_as_toml(scene, folder));
+    if (const auto content = content_given(named, *name)) staged.write(name->filename().string(), *content);
+  staged.write(file.filename().string(), scene_as_toml(named, folder));
   staged.publish();
 }
 

@@ -82,6 +82,7 @@ double full_at_random(const Insert& options, const EmptyBed& bed) {
 }  // namespace
 
 StageEnd insert(const Insert& options, SpheresInBed& in_bed, Reporter& report) {
+  if (options.is_crystal()) return insert_crystal(options, in_bed, report);
   if (options.layout == Layout::lattice) return insert_on_lattice(options, in_bed, report);
   const EffectTimer timer(report.effects["insertion"]);
   Bed& bed = in_bed.bed();
@@ -97,7 +98,7 @@ StageEnd insert(const Insert& options, SpheresInBed& in_bed, Reporter& report) {
   bool goes_on = part.resumed();
   do {
     if (!std::exchange(goes_on, false)) waiting = 0;
-    while (waiting < supply.window().size() && bed.packing_fraction() < options.packing_fraction) {
+    while (waiting < supply.window().size() && bed.packing_fraction() < options.until()) {
       if (report.stop()) return StageEnd::cancelled;
       const std::uint32_t tag = supply.window()[waiting];
       const double r = supply.radius(tag);
@@ -112,7 +113,7 @@ StageEnd insert(const Insert& options, SpheresInBed& in_bed, Reporter& report) {
       supply.take(waiting);
       if (bed.size() % milestone_every == 0) report.milestone("insert", bed);
     }
-  } while (waiting > 0 && snug.place_waiting(options.packing_fraction) > 0);
+  } while (waiting > 0 && snug.place_waiting(options.until()) > 0);
   return waiting > 0 && waiting == supply.window().size() ? StageEnd::full : StageEnd::converged;
 }
 
@@ -183,21 +184,36 @@ const StageEntry& entry_of<Insert>() {
            .help = "place spheres where they overlap nothing, at random or on a lattice",
            .keys = {word(&Insert::layout, "layout",
                          "random places, or a lattice: face-centred, of discs hexagonal, as wide as holds "
-                         "what is to be placed, its sites taken in random order",
-                         {"random", "lattice"}),
+                         "what is to be placed, its sites taken in random order; or a crystal from the floor "
+                         "up: face-centred or body-centred cubic, hexagonal close-packed, simple cubic",
+                         {"random", "lattice", "fcc", "bcc", "hcp", "sc"}),
+                    length(&Insert::spacing, "spacing",
+                           "of a crystal, the distance of a site from the nearest others; if absent the "
+                           "largest spheres touch"),
                     buys_accuracy({1, 10, 100, 1000, 10000},
                                   integer(&Insert::attempts, "attempts",
                                           "places tried for one sphere before it has to wait, on a lattice "
                                           "for the next finer one",
                                           {1, 1e9})),
-                    number(&Insert::packing_fraction, "packing_fraction", "where insertion stops",
-                           packing_fractions())}},
-          {.in_bed = true, .in_plane = true, .reaches = Reaches::insertion}),
+                    number(&Insert::packing_fraction, "packing_fraction",
+                           "where insertion stops; if absent 0.3, of a crystal at its last site",
+                           packing_fractions())},
+           .complete = completion(complete_insert)},
+          {.in_bed = true,
+           .in_box = true,
+           .in_plane = true,
+           .prefers_bed = true,
+           .least_dimension = 2,
+           .most_dimensions = 3,
+           .reaches = Reaches::insertion}),
       .act_in_bed = of_options(insert),
+      .act_in_box = of_options(insert_crystal_in_box),
       .may_bring = {"insertion"},
       .effects = of_options(effects_of_insertion),
-      .reached = of_options(+[](const Insert& options) { return options.packing_fraction; }),
+      .reached = of_options(+[](const Insert& options) { return options.until(); }),
+      .gain = of_options(gain_of_crystal),
       .full = of_options(+[](const Insert& options, const EmptyBed& bed) {
+        if (options.is_crystal()) return full_crystal(options, bed);
         return options.layout == Layout::lattice ? full_lattice(bed) : full_at_random(options, bed);
       })};
   return entry;

@@ -26,6 +26,22 @@ StageEnd insert_on_lattice(const Insert& options, SpheresInBed& in_bed, Reporter
 /// two.
 double full_lattice(const EmptyBed& bed);
 
+/// The same at the sites of a crystal along the coordinate axes, from the floor up, laid so that it has the
+/// most sites of some ways to lay it; in boxes with a plane of sites at the lower walls. Throws
+/// Error{bad_scene} where it does not divide the container's periods, with the nearest that it divides, and
+/// for a spacing below the largest diameter. Cost: O(1) a site, for up to some dozen ways.
+StageEnd insert_crystal(const Insert& options, SpheresInBed& in_bed, Reporter& report);
+/// The same in a periodic box of given size, of which it has to divide the periods.
+StageEnd insert_crystal_in_box(const Insert& options, SpheresInBox& in_box, Reporter& report);
+/// How much denser it is than random packings of equal spheres, in a periodic box.
+double gain_of_crystal(const Insert& options, const SizeDistribution& radii, int dimension, bool has_walls);
+
+/// The packing fraction at which that ends in an empty container.
+double full_crystal(const Insert& options, const EmptyBed& bed);
+
+/// Throws Error{bad_scene} for keys that do not go together; says where insertion stops.
+void complete_insert(Insert& insert, Scene& scene, const schema::Section& section);
+
 /// Until no further sphere finds a position.
 inline constexpr Insert until_full = {.attempts = 1000, .packing_fraction = 1};
 

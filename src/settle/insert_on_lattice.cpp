@@ -153,9 +153,9 @@ StageEnd insert_on_lattice(const Insert& options, SpheresInBed& in_bed, Reporter
   Supply& supply = *in_bed.supply;
   Random random = report.random(Stream::insert);
   const auto is_done = [&] {
-    return supply.exhausted() || bed.packing_fraction() >= options.packing_fraction;
+    return supply.exhausted() || bed.packing_fraction() >= options.until();
   };
-  const std::size_t enough = std::min(in_bed.count_filling(options.packing_fraction), supply.wanted());
+  const std::size_t enough = std::min(in_bed.count_filling(options.until()), supply.wanted());
 
   SnugPlaces snug(in_bed, report);  // where a lattice has no site
   if (snug.only_some_touch()) snug.place_those_that_touch();
@@ -199,7 +199,7 @@ StageEnd insert_on_lattice(const Insert& options, SpheresInBed& in_bed, Reporter
     sites = lattice.sites(bed, supply.smallest(), report.monitor);
   }
   while (!is_done())
-    if (snug.place_waiting(options.packing_fraction) == 0) return StageEnd::full;
+    if (snug.place_waiting(options.until()) == 0) return StageEnd::full;
   return StageEnd::converged;
 }
 

@@ -71,10 +71,10 @@ double seconds_of_insertion(double phi, double spheres, double attempts) {
 }
 
 std::vector<PlanItem> effects_of_insertion(const Insert& options, const Outlook& outlook) {
-  const double phi = std::min(options.packing_fraction, outlook.aim);
+  const double phi = std::min(options.until(), outlook.aim);
   const double spheres = outlook.spheres * phi / outlook.aim;
   const PlanItem walls = questions_to_walls(questions_of_insertion, outlook);
-  const bool on_lattice = options.layout == Layout::lattice;
+  const bool on_lattice = options.layout != Layout::random;
   return {walls,
           {.name = "insertion",
            .what = on_lattice ? "sites of a lattice, one sphere after the other"

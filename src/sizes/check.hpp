@@ -7,8 +7,12 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
+
+/// Whether shares weigh a sphere by its volume: as they do by mass, where there is one density.
+inline bool counts_volume(Basis basis) { return basis != Basis::number; }
 
 // Each throws Error{bad_argument}.
 

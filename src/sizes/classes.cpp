@@ -110,7 +110,7 @@ std::unique_ptr<SizeDistribution> make_classes(std::vector<double> radii, std::v
     throw Error(ErrorCode::bad_argument, fmt::format("two size classes have the radius {}", same->radius));
 
   // Numbers are volumes over sphere volumes; relative to the smallest sphere, so that nothing overflows.
-  if (basis == Basis::volume)
+  if (counts_volume(basis))
     for (Class& c : classes) c.share *= std::pow(classes.front().radius / c.radius, 3);
   const double total = std::transform_reduce(classes.begin(), classes.end(), 0.0, std::plus{},
                                              [](const Class& c) { return c.share; });

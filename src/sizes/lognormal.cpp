@@ -1,28 +1,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-
-#include <boost/math/special_functions/erf.hpp>
 
 #include "bernal/sizes/size_distribution.hpp"
 #include "sizes/check.hpp"
+#include "sizes/standard_normal.hpp"
 
 namespace bernal {
 namespace {
 
-/// Probability that a standard normal variable is below z.
-double normal_below(double z) { return 0.5 * boost::math::erfc(-z / std::numbers::sqrt2); }
-
 /// Probability of [a, b], without cancellation in either tail.
 double normal_between(double a, double b) {
   return a > 0 ? normal_below(-a) - normal_below(-b) : normal_below(b) - normal_below(a);
-}
-
-/// z with normal_below(z) = p.
-double normal_quantile(double p) {
-  if (p <= 0) return -std::numeric_limits<double>::infinity();
-  return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p);
 }
 
 /// ln r normal about `mu` by number, truncated to z in [alpha, beta] for z = (ln r - mu) / sigma.
@@ -78,7 +67,7 @@ std::unique_ptr<SizeDistribution> make_lognormal(double median, double sigma, Ba
     throw Error(ErrorCode::bad_argument,
                 fmt::format("the radii are cut to [{}, {}], which is no interval", min, max));
   // A distribution by volume is the number density times r³, with the same sigma and another median.
-  const double mu = std::log(median) - (basis == Basis::volume ? 3 * sigma * sigma : 0);
+  const double mu = std::log(median) - (counts_volume(basis) ? 3 * sigma * sigma : 0);
   auto lognormal = std::make_unique<Lognormal>(mu, sigma, min, max);
   if (!(lognormal->mass() > 0))
     throw Error(ErrorCode::bad_argument,
@@ -94,6 +83,14 @@ std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32
         ErrorCode::bad_argument,
         fmt::format("the volume-weighted mean {} must exceed the surface-weighted mean {}", r43, r32));
   return make_lognormal(std::sqrt(r43 * r32), std::sqrt(std::log(r43 / r32)), Basis::volume, min, max);
+}
+
+std::unique_ptr<SizeDistribution> make_lognormal_of_mean(double mean, double deviation, Basis basis,
+                                                         double min, double max) {
+  require_positive("the mean radius", mean);
+  require_positive("the standard deviation", deviation);
+  const double spread = 1 + deviation / mean * (deviation / mean);
+  return make_lognormal(mean / std::sqrt(spread), std::sqrt(std::log(spread)), basis, min, max);
 }
 
 }  // namespace bernal

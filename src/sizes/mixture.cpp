@@ -115,7 +115,7 @@ std::unique_ptr<SizeDistribution> make_mixture(std::vector<std::unique_ptr<SizeD
   for (std::size_t i = 0; i < of.size(); ++i) {
     require_positive("the share of a part of a mixture", shares[i]);
     // Numbers are volumes over mean sphere volumes; relative to the first, so that nothing overflows.
-    if (basis == Basis::volume) shares[i] *= of.front()->moment(3) / of[i]->moment(3);
+    if (counts_volume(basis)) shares[i] *= of.front()->moment(3) / of[i]->moment(3);
     total += shares[i];
   }
   std::vector<Part> parts;

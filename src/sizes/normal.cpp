@@ -35,7 +35,7 @@ std::unique_ptr<SizeDistribution> make_normal(double mean, double deviation, Bas
 
   const double mode = std::clamp(mean, min, max);  // where the density is 1, so that nothing underflows
   const double z_mode = (mode - mean) / deviation;
-  const bool by_volume = basis == Basis::volume;
+  const bool by_volume = counts_volume(basis);
   const auto density = [=](double r) {
     const double z = (r - mean) / deviation;
     const double f = std::exp(0.5 * (z_mode - z) * (z_mode + z));

@@ -56,7 +56,7 @@ std::unique_ptr<SizeDistribution> make_uniform(double min, double max, Basis bas
     throw Error(ErrorCode::bad_argument,
                 fmt::format("the smallest radius {} is larger than the largest {}", min, max));
   if (min == max) return make_constant(min);
-  return std::make_unique<PowerLaw>(min, max, basis == Basis::number ? 1 : -2);
+  return std::make_unique<PowerLaw>(min, max, counts_volume(basis) ? -2 : 1);
 }
 
 std::unique_ptr<SizeDistribution> make_fuller(double max, double exponent, double min) {
@@ -66,7 +66,8 @@ std::unique_ptr<SizeDistribution> make_fuller(double max, double exponent, doubl
   return std::make_unique<PowerLaw>(min, max, exponent - 3);
 }
 
-std::unique_ptr<SizeDistribution> make_sieve(std::vector<double> radii, std::vector<double> passing) {
+std::unique_ptr<SizeDistribution> make_sieve(std::vector<double> radii, std::vector<double> passing,
+                                             Basis basis) {
   if (radii.size() < 2 || radii.size() != passing.size())
     throw Error(ErrorCode::bad_argument,
                 fmt::format("a sieve analysis needs two sieves or more and what passes each of them; got {} "
@@ -76,18 +77,41 @@ std::unique_ptr<SizeDistribution> make_sieve(std::vector<double> radii, std::vec
   if (passing.front() != 0)
     throw Error(ErrorCode::bad_argument,
                 fmt::format("nothing may pass the finest sieve, but {} does", passing.front()));
+  const double even_over_the_logarithm = counts_volume(basis) ? -3 : 0;
   std::vector<std::unique_ptr<SizeDistribution>> fractions;
-  std::vector<double> volumes;
+  std::vector<double> amounts;
   for (std::size_t i = 1; i < radii.size(); ++i) {
     if (!(passing[i] >= passing[i - 1] && std::isfinite(passing[i])))
       throw Error(ErrorCode::bad_argument,
                   fmt::format("less passes the sieve {} than a finer one", radii[i]));
     if (passing[i] == passing[i - 1]) continue;
-    constexpr double even_over_the_logarithm = -3;
     fractions.push_back(std::make_unique<PowerLaw>(radii[i - 1], radii[i], even_over_the_logarithm));
-    volumes.push_back(passing[i] - passing[i - 1]);
+    amounts.push_back(passing[i] - passing[i - 1]);
   }
-  return make_mixture(std::move(fractions), std::move(volumes), Basis::volume);
+  return make_mixture(std::move(fractions), std::move(amounts), basis);
+}
+
+std::unique_ptr<SizeDistribution> make_histogram(std::vector<double> edges, std::vector<double> amounts,
+                                                 Basis basis) {
+  if (edges.size() != amounts.size() + 1 || amounts.empty())
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("a histogram needs one edge more than amounts, at least two; got {} and {}",
+                            edges.size(), amounts.size()));
+  std::vector<std::unique_ptr<SizeDistribution>> bins;
+  std::vector<double> filled;
+  for (std::size_t i = 0; i < amounts.size(); ++i) {
+    if (!(edges[i] < edges[i + 1]))
+      throw Error(
+          ErrorCode::bad_argument,
+          fmt::format("the edges must ascend, but {} stands before {}", edges[i], edges[i + 1]));
+    if (!(amounts[i] >= 0 && std::isfinite(amounts[i])))
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("what is in a bin must be finite and at least 0, not {}", amounts[i]));
+    if (amounts[i] == 0) continue;
+    bins.push_back(make_uniform(edges[i], edges[i + 1], basis));
+    filled.push_back(amounts[i]);
+  }
+  return make_mixture(std::move(bins), std::move(filled), basis);
 }
 
 }  // namespace bernal

@@ -97,7 +97,7 @@ std::unique_ptr<SizeDistribution> make_table(std::vector<double> radii, std::vec
     const auto beyond = std::ranges::upper_bound(spline.begin() + 1, spline.end(), r, {}, &Cubic::x);
     const Cubic& cubic = *std::prev(beyond);
     const double f = std::max(0.0, cubic.at(r - cubic.x));
-    return basis == Basis::volume ? f / cube(r / largest) : f;
+    return counts_volume(basis) ? f / cube(r / largest) : f;
   };
   return make_from_density("table", density, breaks);
 }

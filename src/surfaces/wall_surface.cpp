@@ -11,6 +11,7 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/read/triangulate.hpp"
+#include "domain/revolved_surface.hpp"
 #include "geometry/edges.hpp"
 #include "geometry/point_numbers.hpp"
 #include "surfaces/icosphere.hpp"
@@ -151,6 +152,15 @@ struct MakeWalls {
     made.walls.triangles = mesh.triangles;
     made.walls.faces.assign(made.walls.triangles.size(), on_wall);
     return made;
+  }
+
+  WallSurface operator()(const Revolved& revolved) const {
+    const double sides = sides_for(revolved, deflection);
+    if (!(sides * static_cast<double>(revolved.profile.size()) < 5e6))
+      throw Error(ErrorCode::bad_argument,
+                  "a solid of revolution so much wider than its spheres takes millions of triangles; allow a "
+                  "larger deflection");
+    return (*this)(surface_of(revolved, static_cast<int>(sides), RoundAs::circumscribed));
   }
 
   WallSurface operator()(const Polygon&) const {

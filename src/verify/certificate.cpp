@@ -34,7 +34,8 @@ void check_arguments(int dimension, const Domain& domain, const CertifyOptions& 
       throw Error(ErrorCode::bad_argument,
                   fmt::format("a gap is {}; it must be finite, and not negative", gap));
   const auto has_inset = [](const auto& shape) { return shape && shape->inset != 0; };
-  if (has_inset(std::get_if<Mesh>(&domain)) || has_inset(std::get_if<Polygon>(&domain)))
+  if (has_inset(std::get_if<Mesh>(&domain)) || has_inset(std::get_if<Polygon>(&domain)) ||
+      has_inset(std::get_if<Revolved>(&domain)))
     throw Error(ErrorCode::bad_argument, "the domain has an inset; certify with a wall_gap instead");
 
   if (dimension != dimension_of(domain))
@@ -262,7 +263,7 @@ Certificate certificate_of(const Source& spheres, const Domain& domain, const Ce
     result.overlaps = std::move(tally.overlaps).sorted();
     result.protrusions = std::move(tally.protrusions).sorted();
     result.certified = !result.cancelled && tally.overlapping == 0 && tally.protruding == 0;
-    result.statement = statement_of(result, domain);
+    result.statement = in_dimension(dimension_of_spheres(spheres), statement_of(result, domain));
   }
   result.seconds = watch.seconds();
   return result;

@@ -13,6 +13,7 @@
 #include "verify/mesh_wall.hpp"
 #include "verify/polygon_wall.hpp"
 #include "verify/predicates.hpp"
+#include "verify/revolved_wall.hpp"
 
 namespace bernal::verify {
 namespace {
@@ -133,7 +134,7 @@ Walls<D> made(Wall wall) {
 
 }  // namespace
 
-static_assert(std::variant_size_v<Domain> == 5, "walls_of needs the walls of the new container");
+static_assert(std::variant_size_v<Domain> == 6, "walls_of needs the walls of the new container");
 
 template <int D>
 Walls<D> walls_of(const Domain& domain) {
@@ -142,6 +143,7 @@ Walls<D> walls_of(const Domain& domain) {
   if constexpr (D == 3) {
     if (const auto* cylinder = std::get_if<Cylinder>(&domain)) return made<D>(CylinderWall(*cylinder));
     if (const auto* sphere = std::get_if<Sphere>(&domain)) return made<D>(SphereWall(*sphere));
+    if (const auto* revolved = std::get_if<Revolved>(&domain)) return made<D>(RevolvedWall(*revolved));
     return made<D>(MeshWall(std::get<Mesh>(domain)));
   }
   return [](const Ball<D>&, const CertifyOptions&, Tally&) { return WallState(); };

@@ -38,11 +38,12 @@ std::string view_page(const Packing& packing, const Measurements* measured, cons
   page.add(
       "<!doctype html>\n<html lang=\"en\" class=\"bernal-page{}\"><head><meta charset=\"utf-8\">\n{}"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
-      "<title>{} sphere{} in a {}</title>\n<style>",
+      "<title>{} {} in a {}</title>\n<style>",
       options.theme == Theme::light  ? " bernal-light"
       : options.theme == Theme::dark ? " bernal-dark"
                                      : "",
-      offline_policy, grouped(packing.spheres.size()), packing.spheres.size() == 1 ? "" : "s",
+      offline_policy, grouped(packing.spheres.size()),
+      in_dimension(packing.spheres.dimension(), packing.spheres.size() == 1 ? "sphere" : "spheres"),
       name_of(packing.domain));
   page.raw(viewer_style);
   page.raw("</style></head>\n<body>\n");

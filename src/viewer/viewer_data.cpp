@@ -10,6 +10,7 @@
 
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
+#include "domain/revolved_surface.hpp"
 #include "geometry/edges.hpp"
 #include "geometry/simplified.hpp"
 #include "measure/neighbourhoods.hpp"
@@ -175,6 +176,10 @@ struct WallsJson {
                        mesh.triangles.size(), base64_of<float>(placed_all(shown.vertices, frame)),
                        base64_of<std::uint32_t>(corners), base64_of<float>(placed_all(ends, frame)));
   }
+  std::string operator()(const Revolved& revolved) const {
+    constexpr int sides = 180;
+    return (*this)(surface_of(revolved, sides));
+  }
   std::string operator()(const Polygon& polygon) const {
     std::vector<Vector<3>> ends;
     for (const auto& loop : polygon.loops)
@@ -186,7 +191,9 @@ struct WallsJson {
 
 std::string domain_json(const Domain& domain, const Frame& frame, const ViewOptions& options) {
   const Bounds<dynamic> bounds = bounds_of<dynamic>(domain);
-  const std::string_view kind = std::holds_alternative<Box>(domain) ? "box" : kind_of(domain);
+  const std::string_view kind = std::holds_alternative<Box>(domain)        ? "box"
+                                : std::holds_alternative<Revolved>(domain) ? "mesh"  // as it is drawn
+                                                                           : kind_of(domain);
   return fmt::format("{{\"kind\":{},\"name\":{},\"walls\":{},\"lower\":{},\"upper\":{},\"periods\":{}{}}}",
                      json_text(kind), json_text(name_of(domain)), has_walls(domain),
                      json_list(in_frame(bounds.lower, frame)), json_list(in_frame(bounds.upper, frame)),

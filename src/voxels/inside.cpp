@@ -139,6 +139,52 @@ void Inside::cross(const Polygon& polygon, double, std::vector<Crossing>& out) c
   }
 }
 
+/// Between two neighbours among all places where the line meets what edges sweep over, the middle tells.
+std::vector<Inside::Interval> Inside::parts(const Revolved& solid, double y, double z) const {
+  const Vector<3> axis = solid.axis.stableNormalized(), from(0, y - solid.base[1], z - solid.base[2]);
+  const double along = from.dot(axis), slope = axis[0];
+  const Vector<3> across = from - along * axis, step = Vector<3>::UnitX() - slope * axis;
+  const double pp = across.squaredNorm(), pv = across.dot(step), vv = step.squaredNorm();
+  std::vector<double> places;
+  solid.for_each_edge([&](const Vector<2>& a, const Vector<2>& b) {
+    const Vector<2> e = b - a;
+    if (e[1] == 0) {
+      if (slope != 0) places.push_back((a[1] - along) / slope);
+      return;
+    }
+    // r(x) = k + m x on the cone of the edge
+    const double rise = e[0] / e[1], k = a[0] + rise * (along - a[1]), m = rise * slope;
+    const double qa = vv - m * m, qb = pv - k * m, qc = pp - k * k;
+    if (std::abs(qa) <= 1e-14) {
+      if (qb != 0) places.push_back(-0.5 * qc / qb);
+    } else if (const double discriminant = qb * qb - qa * qc; discriminant >= 0) {
+      const double q = -(qb + std::copysign(std::sqrt(discriminant), qb));
+      places.push_back(q / qa);
+      if (q != 0) places.push_back(qc / q);
+    }
+  });
+  std::ranges::sort(places);
+  const auto is_inside = [&](double x) {
+    const double r = std::sqrt(std::max(0.0, pp + x * (2 * pv + x * vv))), h = along + x * slope;
+    bool odd = false;
+    solid.for_each_edge([&](const Vector<2>& a, const Vector<2>& b) {
+      if ((a[1] > h) == (b[1] > h)) return;
+      odd ^= r < a[0] + (h - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+    });
+    return odd;
+  };
+  std::vector<Interval> found;
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    if (!(places[k] < places[k + 1]) || !is_inside(0.5 * (places[k] + places[k + 1]))) continue;
+    const double begin = places[k] + solid.base[0], end = places[k + 1] + solid.base[0];
+    if (!found.empty() && found.back()[1] == begin)
+      found.back()[1] = end;
+    else
+      found.push_back({begin, end});
+  }
+  return found;
+}
+
 void Inside::layer(std::int64_t k, std::vector<InsideRun>& out) const {
   out.clear();
   const double z = grid_.center(2, k);
@@ -150,6 +196,9 @@ void Inside::layer(std::int64_t k, std::vector<InsideRun>& out) const {
           std::sort(crossings.begin(), crossings.end());
           for (std::size_t c = 0; c + 1 < crossings.size(); c += 2)
             add(crossings[c].row, {crossings[c].x, crossings[c + 1].x}, out);
+        } else if constexpr (requires { this->parts(shape, z, z); }) {
+          for (std::int64_t row = 0; row < grid_.count[1]; ++row)
+            for (const Interval& part : parts(shape, grid_.center(1, row), z)) add(row, part, out);
         } else {
           for (std::int64_t row = 0; row < grid_.count[1]; ++row)
             add(row, interval(shape, grid_.center(1, row), z), out);

@@ -40,6 +40,8 @@ class Inside {
   Interval interval(const Sphere&, double y, double z) const;
   void cross(const Mesh&, double z, std::vector<Crossing>& out) const;
   void cross(const Polygon&, double z, std::vector<Crossing>& out) const;
+  /// The parts of a line along x.
+  std::vector<Interval> parts(const Revolved&, double y, double z) const;
   /// The first row with its centre at y or above.
   std::int64_t row_from(double y) const;
 

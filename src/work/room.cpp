@@ -91,6 +91,25 @@ void append_tangents(const Facet& facet, const Vector<3>& place, std::vector<Obs
     for (const double side : {1.0, -1.0}) obstacles.push_back({-side * n, facet.radius - side * n.dot(out)});
 }
 
+/// Of the inner side of a frustum the tangent planes all around, too: of the edge's nearest point.
+void append_tangents_of_frustum(const Facet& facet, const Vector<3>& place, double distance,
+                                const Vector<3>& away, std::vector<Obstacle>& obstacles) {
+  Vector<3> out = place - facet.a;
+  out -= out.dot(facet.b) * facet.b;
+  const double inwards = -away.dot(out);
+  if (!(inwards > 0)) return;
+  const double r = out.norm();
+  out /= r;
+  const Vector<3> along = away + (inwards / r) * out, across = facet.b.cross(out);
+  constexpr double third = 0.5, height = 0.8660254037844386;
+  for (const auto& [c, s] : {std::pair{third, height}, {third, -height}, {-third, height}, {-third, -height},
+                             {-1.0, 0.0}}) {
+    const Vector<3> turned = c * out + s * across, normal = along - (inwards / r) * turned;
+    // The plane has the same distance from the axis point; r·(out - turned) is how much nearer it is.
+    obstacles.push_back({normal, distance + normal.dot(r * (out - turned))});
+  }
+}
+
 }  // namespace
 
 Surroundings walls_of(const Container& container) {
@@ -108,7 +127,10 @@ Surroundings walls_of(const Container& container) {
       }
       const Vector<3> offset = place - closest_point(near.facet, place);
       const double distance = offset.norm();
-      if (distance > 0) obstacles.push_back({offset / distance, near.distance});
+      if (!(distance > 0)) continue;
+      obstacles.push_back({offset / distance, near.distance});
+      if (near.facet.kind == Facet::Kind::frustum)
+        append_tangents_of_frustum(near.facet, place, near.distance, offset / distance, obstacles);
     }
   };
 }

@@ -35,6 +35,7 @@ struct EmptyBed {
   int dimension = 3;
   double relaxed = 0;     ///< packing fraction that relaxation would reach there
   double wall_share = 0;  ///< area of the wall times the mean diameter, over the volume
+  double largest = 0;     ///< radius, in the scene's unit
   double evenness = 1;    ///< mean volume of a sphere over that of the largest: 1 for equal spheres
   /// Of the container's volume, where the scene says how high the bed is: the rest is of that part.
   double share = 1;

@@ -34,6 +34,7 @@ struct Task {
   /// Random close packing of the sizes without walls, as predicted; 0 where no stage asks.
   double close_packing = 0;
   Domain domain = {};
+  Frame frame = {};  ///< of the packer's coordinates
 
   // ---- in a bed
 

@@ -32,7 +32,14 @@ TEST(Loose, IsAnEndOfItsOwnThatSaysWhy) {
                                  "11,000 spheres would be enough"})
     EXPECT_NE(reason.find(word), std::string::npos) << word << "\nis not in: " << reason;
   EXPECT_NE(packed.err.find("loose: all 300"), std::string::npos) << packed.err;
-  EXPECT_NE(text_of(folder / "out/report.html").find("loose: all 300"), std::string::npos);
+  const std::string page = text_of(folder / "out/report.html");
+  EXPECT_NE(page.find("loose: all 300"), std::string::npos);
+  // At first sight: nothing is green, though it is certified.
+  EXPECT_NE(page.find("class=\"statement short\""), std::string::npos);
+  EXPECT_NE(page.find("<b class=\"short\">yes</b>"), std::string::npos);
+  EXPECT_EQ(page.find("class=\"yes\""), std::string::npos);
+  EXPECT_EQ(page.find("class=\"statement\""), std::string::npos);
+  EXPECT_EQ(packed.err.find("\x1b"), std::string::npos);  // colours are for terminals
   EXPECT_EQ(bernal({"verify", out}).status, 0);
 
   // What was drawn stands beside what was asked, and in the scene as it ran.
@@ -53,6 +60,9 @@ TEST(Loose, ALoosePackingThatIsAskedForIsNone) {
   const std::string out = (folder / "out").string();
   EXPECT_EQ(bernal({"pack", folder.write("scene.toml", scene).string(), "-o", out, "--quiet"}).status, 0);
   EXPECT_EQ(report_of(out)["outcome"], "converged");
+  const std::string page = text_of(folder / "out/report.html");
+  EXPECT_NE(page.find("<b class=\"yes\">yes</b>"), std::string::npos);
+  EXPECT_EQ(page.find("class=\"short\""), std::string::npos);
   EXPECT_LT(report_of(out)["phi"].get<double>(), 0.575);
 }
 

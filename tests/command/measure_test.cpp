@@ -88,6 +88,33 @@ TEST_F(Measure, WritesTheLocalPackingOfEverySphereAndReplacesNothingElse) {
   }
 }
 
+TEST_F(Measure, WritesAllContactsAsWhatTheNameEndsIn) {
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  for (int twice = 0; twice < 2; ++twice) {
+    for (const char* name : {"c.csv", "c.npy", "c.vtp"}) {
+      const Ended ended = with(discs, {"--contacts", file(name), "--gap", "0.001", "--json"});
+      EXPECT_EQ(ended.status, 0) << ended.err;
+      const auto measured = nlohmann::json::parse(ended.out);
+      EXPECT_EQ(measured.at("fabric"), nlohmann::json::parse("[[0.5, 0.0], [0.0, 0.5]]"));
+      EXPECT_EQ(measured.at("spheres_by_contacts"), nlohmann::json::parse("[0, 0, 0, 0, 2]"));
+    }
+    // Each disc touches the other on both sides, and its own image.
+    const std::string text = text_of(folder / "c.csv");
+    EXPECT_TRUE(text.starts_with("# unit: mm\ni,j,gap,n0,n1,x0,x1\n0,0,0,0,")) << text;
+    for (const std::string line : {"\n0,1,0,1,0,2,1\n", "\n0,1,0,-1,0,0,1\n", "\n1,1,0,0,"})
+      EXPECT_NE(text.find(line), std::string::npos) << line << text;
+    EXPECT_EQ(std::ranges::count(text, '\n'), 2 + 4);
+    EXPECT_NE(text_of(folder / "c.npy").find("(4, 7)"), std::string::npos);
+    EXPECT_NE(text_of(folder / "c.vtp").find("NumberOfLines=\"4\""), std::string::npos);
+  }
+  folder.write("mine.csv", "1,2,3\n");
+  folder.write("mine.npy", "1,2,3\n");
+  for (const char* name : {"spheres.csv", "mine.csv", "mine.npy", "c.txt"})
+    expect_refused_in_one_line(with(discs, {"--contacts", file(name)}), {name});
+  EXPECT_EQ(text_of(folder / "spheres.csv"), discs);
+  EXPECT_EQ(text_of(folder / "mine.csv"), "1,2,3\n");
+}
+
 /// Two discs that nothing holds: the count of rattlers would say nothing, and neither does it stand there.
 TEST_F(Measure, SaysOfDiscsBetweenWallsWhatIsSo) {
   folder.write(
@@ -154,7 +181,8 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   ASSERT_EQ(bernal({"pack", box, "-o", out, "--quiet"}).status, 0);
   const Ended text = bernal({"measure", out});
   EXPECT_EQ(text.status, 0) << text.err;
-  for (const std::string part : {"with the wall", "porosity over the distance", "near the wall",
+  for (const std::string part : {"with the wall", "porosity over the distance z from the nearest", "near the wall",
+                                 "porosity along the axis", "from the side alone", "between walls: by the share",
                                  "core              packing fraction", "chambers          1; too narrow: ",
                                  "crystalline", "segregation", "drawn sequence    the same sizes to the bit"})
     EXPECT_NE(text.out.find(part), std::string::npos) << part << "\nis not in\n" << text.out;
@@ -177,7 +205,15 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   EXPECT_NEAR(share, 1, 1e-12);
   EXPECT_NEAR(integral, measured.at("walls").at("mean_porosity").get<double>(), 1e-9);
   EXPECT_EQ(measured.at("walls").at("mean_porosity"), report.at("walls").at("mean_porosity"));
-  EXPECT_TRUE(measured.at("g_r").is_null());
+  const auto& radial = measured.at("g_r");
+  EXPECT_EQ(radial.at("share").size(), radial.at("g").size());
+  const auto& column = measured.at("column");
+  EXPECT_EQ(column.at("has_lid"), measured.at("bed").is_null());
+  EXPECT_EQ(column.at("axis"), nlohmann::json::parse("[0.0, 0.0, 1.0]"));
+  EXPECT_GT(column.at("along").size(), 10u);
+  EXPECT_GT(column.at("side").at("profile").at("layers").size(), 3u);
+  EXPECT_EQ(column.at("side").at("profile").at("mean_porosity").get<double>() > 0, true);
+  EXPECT_EQ(column.at("side").at("from"), report.at("column").at("side").at("from"));
   EXPECT_EQ(measured.at("backbone").at("isostatic_contacts").is_null(),
             measured.at("backbone").at("spheres") == 0);
   EXPECT_EQ(measured.at("held_from_gap"), report.at("held_from_gap"));

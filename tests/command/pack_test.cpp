@@ -94,6 +94,49 @@ TEST(Pack, AMeshNeedsNoScene) {
                              {"positive length, not -2"});
   expect_refused_in_one_line(bernal_in(folder, "pack again.toml --diameter 2"), {"leave out --diameter"});
   expect_refused_in_one_line(bernal_in(folder, "pack again.toml --unit mm"), {"--unit is for a mesh"});
+  expect_refused_in_one_line(bernal_in(folder, "pack again.toml --fill --count 3"),
+                             {"--fill excludes --count"});
+  expect_refused_in_one_line(bernal_in(folder, "explain again.toml --radius 2"), {"leave out --radius"});
+}
+
+TEST(Pack, AMeshTakesCountFillRadiusCapAndItsOwnUnit) {
+  const Folder folder;
+  // A cube of 10 mm, without its top, in inches.
+  std::string open = "OFF\n8 5 0\n";
+  for (const char* corner : {"0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "1 1 1", "0 1 1"})
+    open += std::string(corner) + "\n";
+  for (const char* face : {"4 0 3 2 1", "4 0 1 5 4", "4 1 2 6 5", "4 2 3 7 6", "4 3 0 4 7"})
+    open += std::string(face) + "\n";
+  folder.write("open.off", open);
+  const std::string flags = "open.off --unit mm --file-unit in --cap 'z = 12.7'";
+  const Ended packed = bernal_in(folder, "pack " + flags + " --radius 1 --count 50");
+  EXPECT_EQ(packed.status, 0) << packed.err;
+  expect_certified(folder / "open");
+  const auto report = report_of(folder / "open");
+  EXPECT_EQ(report["n"], 50);
+  EXPECT_EQ(report["unit"], "mm");
+  EXPECT_NEAR(report["container"]["volume"].get<double>(), 25.4 * 25.4 * 12.7, 1e-9);
+  EXPECT_NE(packed.out.find("radius = 1"), std::string::npos) << packed.out;
+
+  EXPECT_EQ(bernal_in(folder, "pack " + flags + " --diameter 5 --fill --quiet -o filled").status, 0);
+  EXPECT_NE(text_of(folder / "filled/scene.toml").find("fill = true"), std::string::npos);
+  expect_certified(folder / "filled");
+
+  // The unit of the file alone is that of all lengths.
+  const Ended inches = bernal_in(folder, "explain open.off --file-unit in --cap z=1 --diameter 0.1 --json");
+  EXPECT_EQ(inches.status, 0) << inches.err;
+  EXPECT_EQ(nlohmann::json::parse(inches.out)["unit"], "in");
+}
+
+TEST(Explain, AMeshIsExplainedAsItIsPackedAndWithoutSizesSaysWhatIsMissing) {
+  const Folder folder;
+  const std::string mesh = BERNAL_DATA "/meshes/hopper.stl";
+  const Ended explained = bernal({"explain", mesh, "--unit", "m", "--diameter", "0.12", "--count", "100"});
+  EXPECT_EQ(explained.status, 0) << explained.err;
+  EXPECT_NE(explained.out.find("spheres    100; diameter in m"), std::string::npos) << explained.out;
+  expect_refused_in_one_line(bernal({"explain", mesh}), {"is a mesh, not a scene", "--unit mm --diameter 2"});
+  expect_refused_in_one_line(bernal({"pack", mesh, "--count", "5"}),
+                             {"is a mesh, not a scene", "--diameter 2"});
 }
 
 TEST(Pack, AFileThatSaysItsUnitNeedsNone) {

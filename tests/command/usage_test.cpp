@@ -2,6 +2,8 @@
 #include <cctype>
 #include <filesystem>
 #include <regex>
+#include <sstream>
+#include <utility>
 
 #include "check.hpp"
 
@@ -58,6 +60,58 @@ TEST(Usage, KeysSaysWhatASceneMayHold) {
   EXPECT_EQ(one.status, 0);
   EXPECT_NE(one.out.find("patience = 12"), std::string::npos) << one.out;
   expect_refused_in_one_line(bernal({"keys", "relaks"}), {"did you mean \"relax\"?"});
+}
+
+TEST(Usage, KeysOfAGroupHasThoseOfItsTables) {
+  const std::string all = bernal({"keys", "container"}).out, mesh = bernal({"keys", "mesh"}).out;
+  std::istringstream lines(mesh);
+  int keys = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  ") || line[2] == ' ') continue;
+    const std::string name = line.substr(0, line.find_first_of(" ;", 2));
+    EXPECT_NE(all.find("\n" + name), std::string::npos) << name;
+    ++keys;
+  }
+  EXPECT_GT(keys, 10);
+}
+
+TEST(Usage, KeysFindsByWords) {
+  // What people say, and the first key that they are to see.
+  const std::pair<const char*, const char*> wishes[] = {{"roundness of the top", "top"},
+                                                        {"heap", "heap_angle"},
+                                                        {"porosity", "porosity"},
+                                                        {"cap", "cap"},
+                                                        {"how many spheres", "count"},
+                                                        {"kg", "material_density"},
+                                                        {"watertight", "cap"},
+                                                        {"reproducible", "seed"},
+                                                        {"void", "porosity"}};
+  for (const auto& [words, key] : wishes) {
+    const Ended found = bernal({"keys", words});
+    EXPECT_EQ(found.status, 0) << found.err;
+    EXPECT_TRUE(found.out.starts_with("Keys of a scene:\n  ")) << words << "\n" << found.out;
+    EXPECT_NE(found.out.find(std::string("\n  ") + key), std::string::npos) << words << "\n" << found.out;
+    EXPECT_NE(found.out.find("; in "), std::string::npos) << found.out;  // where it stands
+  }
+  // As one word or as several; an exact name of a table is that table.
+  EXPECT_EQ(bernal({"keys", "top", "of", "bed"}).out, bernal({"keys", "top of bed"}).out);
+  EXPECT_TRUE(bernal({"keys", "mesh"}).out.starts_with("mesh: "));
+  // Options of commands, too.
+  const Ended contacts = bernal({"keys", "neighbours"});
+  EXPECT_NE(contacts.out.find("contact"), std::string::npos) << contacts.out;
+  EXPECT_NE(bernal({"keys", "checkpoint"}).out.find("Options of commands:\n  bernal pack --"),
+            std::string::npos);
+  expect_refused_in_one_line(bernal({"keys", "xylophone"}), {"nothing in a scene is called \"xylophone\""});
+}
+
+TEST(Usage, HelpOfACommandIsItsHelp) {
+  EXPECT_EQ(bernal({"help"}).out, bernal({"--help"}).out);
+  EXPECT_EQ(bernal({"help", "pack"}).out, bernal({"pack", "--help"}).out);
+  EXPECT_EQ(bernal({"help", "design", "target"}).out, bernal({"design", "target", "--help"}).out);
+  EXPECT_EQ(bernal({"help", "pack"}).status, 0);
+  expect_refused_in_one_line(bernal({"help", "pak"}), {"unknown command \"pak\"; did you mean \"pack\"?"});
+  expect_refused_in_one_line(bernal({"help", "pack", "on"}),
+                             {"bernal pack has no command", "leave \"on\" out"});
 }
 
 TEST(Usage, VersionIsOneLine) {

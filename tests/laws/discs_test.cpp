@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/report/describe.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
@@ -157,6 +158,17 @@ TEST(Discs, FilesReadBackAndMeasuresAreOfTwoDimensions) {
   EXPECT_TRUE(text_of(folder / "spheres.csv").starts_with("# unit: mm\nx0,x1,r\n"));
   EXPECT_TRUE(text_of(folder / "packing.svg").starts_with("<svg"));
   EXPECT_FALSE(std::filesystem::exists(folder / "section.svg"));
+  // They are called discs, wherever people read of them.
+  const std::string page = text_of(folder / "report.html");
+  for (const std::string& text :
+       {packing.reason, written.certificate.statement,
+        explain(build(parse_scene(scene_in(toml_of(test::with_hole()), lognormal), "s.toml"))),
+        page.substr(0, page.find("<script"))}) {
+    EXPECT_NE(text.find("discs"), std::string::npos) << text.substr(0, 300);
+    for (const std::string word : {" sphere ", " spheres ", ">Spheres<", " spheres,"})
+      EXPECT_EQ(text.find(word), std::string::npos)
+          << word << text.substr(std::min(text.size(), text.find(word)), 200);
+  }
   const Packing read = read_packing(folder.path());
   EXPECT_EQ(read.spheres, packing.spheres);
   EXPECT_TRUE(certify(read.spheres, read.domain).certified);

@@ -7,9 +7,10 @@ import json
 import pickle
 import subprocess
 import unittest
+import warnings
 
 import numpy as np
-from support import COMMAND, HELIX, InFolder, small
+from support import COMMAND, DATA, HELIX, InFolder, small
 
 import bernal
 
@@ -108,10 +109,43 @@ class Runs(InFolder):
         self.assertIn("height:300px", view._repr_html_())
         self.refuses(bernal.InputError, "plane", lambda: packing.section("nowhere"))
 
-    def test_no_place_left_is_an_outcome(self):
-        packing = bernal.pack(bernal.Scene(bernal.Box([4, 4, 4]), diameters=1, count=500, stages=bernal.Insert()))
+    def test_no_place_left_is_an_outcome_that_is_seen(self):
+        scene = bernal.Scene(bernal.Box([4, 4, 4]), diameters=1, count=500, stages=bernal.Insert())
+        with self.assertWarns(bernal.NotReached) as warned:
+            packing = bernal.pack(scene)
         self.assertEqual(packing.outcome, "full")
         self.assertTrue(bernal.verify(packing))
+        self.assertIn(packing.reason, str(warned.warning))
+        self.assertIn(f"full: {packing.reason}", repr(packing))
+        self.assertIn("color:#b87400", packing._repr_html_())
+        self.assertTrue(issubclass(bernal.Stopped, bernal.NotReached))
+
+    def test_a_perfect_end_warns_of_nothing(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            packing = bernal.pack(small())
+        self.assertTrue(repr(packing).endswith(", converged>"))
+        self.assertNotIn("#b87400", packing._repr_html_())
+
+    def test_discs_are_called_so(self):
+        packing = bernal.pack(bernal.Scene(bernal.Box([20, 20]), diameters=1, count=50, stages=bernal.Insert()))
+        self.assertIn("50 discs", repr(packing))
+        self.assertIn(">discs<", packing._repr_html_())
+
+    def test_a_mesh_is_packed_without_a_scene(self):
+        hopper = DATA / "meshes" / "hopper.stl"
+        packing = bernal.pack(hopper, unit="m", diameters=bernal.Lognormal(0.12, 0.1), count=50)
+        self.assertEqual((len(packing), packing.unit), (50, "m"))
+        self.assertTrue(bernal.verify(packing))
+        again = bernal.pack(bernal.Scene(bernal.Mesh(hopper), unit="m", diameters=bernal.Lognormal(0.12, 0.1), count=50))
+        self.assertEqual(again.hash, packing.hash)
+        plan = bernal.explain(str(hopper), file_unit="m", unit="mm", radius=60, fill=True)
+        self.assertEqual(plan.unit, "mm")
+        self.assertAlmostEqual(bernal.explain(hopper, unit="m", diameter=0.12).expected.count, plan.expected.count, 3)
+        self.refuses(bernal.InputError, "is a mesh, not a scene", lambda: bernal.explain(hopper))
+        self.refuses(bernal.InputError, "does not say its unit", lambda: bernal.pack(hopper, diameters=1))
+        self.refuses(bernal.InputError, 'no "cout"; did you mean "count"', lambda: bernal.pack(hopper, unit="m", radii=1, cout=3))
+        self.refuses(bernal.KeywordError, "leave out count", lambda: bernal.pack(small(), count=3))
 
     def test_files_hold_the_packing(self):
         packing = bernal.pack(small(outputs=["yade"]))
@@ -150,6 +184,27 @@ class Runs(InFolder):
         self.assertLess(few, many)
         self.assertEqual(packing.coordination([0.002])[0], bernal.measure(packing).coordination)
         self.refuses(bernal.InputError, "from 0 to 1", lambda: packing.coordination([2]))
+
+    def test_contacts_one_by_one(self):
+        packing = bernal.pack(small())
+        contacts, measured = packing.contacts(0.01), bernal.measure(packing, gap=0.01)
+        self.assertEqual(len(contacts.i), measured.contacts)
+        self.assertEqual((contacts.normal.shape, contacts.place.shape), ((len(contacts.i), 3), (len(contacts.i), 3)))
+        np.testing.assert_allclose(np.linalg.norm(contacts.normal, axis=1), 1)
+        ends = np.bincount(contacts.i, minlength=300) + np.bincount(contacts.j, minlength=300)
+        np.testing.assert_array_equal(ends, measured.per_sphere.coordination)
+        self.assertAlmostEqual(ends.mean(), measured.coordination, 12)
+        fabric = np.einsum("ca,cb->ab", contacts.normal, contacts.normal) / len(contacts.i)
+        np.testing.assert_allclose(fabric, np.array(measured.fabric), atol=1e-12)
+        apart = packing.centers[contacts.j] - packing.centers[contacts.i]
+        size = packing.bounds[1] - packing.bounds[0]
+        apart -= size * np.round(apart / size)
+        gaps = np.linalg.norm(apart, axis=1) - packing.radii[contacts.i] - packing.radii[contacts.j]
+        np.testing.assert_allclose(contacts.gap, gaps, atol=1e-12)
+        vessel = bernal.pack(bernal.Scene(bernal.Cylinder(3, 6), diameters=1, count=40))
+        walls = vessel.contacts(0.02)
+        self.assertEqual(np.sum(walls.j == -1), bernal.measure(vessel, gap=0.02).wall_contacts)
+        self.refuses(bernal.InputError, "from 0 to 1", lambda: packing.contacts(2))
 
     def test_exports_and_imports(self):
         packing = bernal.pack(small())

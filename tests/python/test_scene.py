@@ -76,7 +76,7 @@ class Classes(InFolder):
         self.assertIn("alpha : a number above 0 and of at most 1000000, default 17", bernal.Relax.__doc__)
         self.assertIn("(vertices, faces)", bernal.Mesh.__doc__)
         self.assertIn("Give alpha or period, or none of them.", bernal.Relax.__doc__)
-        self.assertIn("Give median and sigma and basis or d43 and d32.", bernal.Lognormal.__doc__)
+        self.assertIn("Give median and sigma and basis or mean and sd and basis or d43 and d32.", bernal.Lognormal.__doc__)
         self.assertIn("overlap : ", bernal.Scene.__doc__)
         for kind in _classes.CLASSES.values():
             for key in kind._table["keys"]:
@@ -89,6 +89,18 @@ class Classes(InFolder):
         self.assertEqual(small(count=1e3).count, 1000)
         self.refuses(bernal.InputError, "must be a whole number", lambda: small(count=2.5))
         self.refuses(bernal.InputError, "numbers, text, flags", lambda: bernal.Relax(alpha={}))
+
+    def test_an_array_of_diameters_is_packed_each_exactly_once(self):
+        diameters = np.random.default_rng(3).lognormal(0, 0.3, 1200)
+        scene = bernal.Scene(bernal.Periodic(), diameters=bernal.List(diameters))
+        packing = bernal.pack(scene)
+        np.testing.assert_array_equal(np.sort(2 * packing.radii), np.sort(diameters))
+        packing.write("out")
+        again = bernal.Scene.read("out/scene.toml")
+        np.testing.assert_array_equal(again.diameters.values, diameters)
+        np.save("diameters.npy", diameters)
+        self.assertEqual(scene.replace(diameters=bernal.List(file="diameters.npy")).toml, scene.toml)
+        self.refuses(bernal.InputError, 'draw = "resample"', lambda: scene.replace(count=7))
 
     def test_copies_and_pickles_are_equal(self):
         for each in (

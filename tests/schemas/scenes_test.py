@@ -145,11 +145,12 @@ class Scenes(unittest.TestCase):
 
     def test_values_that_only_the_meaning_forbids_are_left_to_the_reader(self):
         """What the schema cannot say: kept here, so that a reader that becomes milder is noticed."""
-        scenes = ['container = { kind = "sphere", radius = 9 }\n[spheres]\n'
-                  'radius = { distribution = "uniform", min = 2, max = 1 }\n']
+        scenes = [SPHERE + '[spheres]\nradius = { distribution = "uniform", min = 2, max = 1 }\n',
+                  SPHERE + '[spheres]\ndiameter = { distribution = "percentiles", d50 = 1 }\n']
         with Reader() as reader:
-            self.assertIn("below", reader.refusals(scenes)[0])
-        self.assertTrue(accepted(scenes[0]))
+            for scene, refusal, why in zip(scenes, reader.refusals(scenes), ("below", "two percentiles")):
+                self.assertIn(why, refusal)
+                self.assertTrue(accepted(scene))
 
 
 SPHERE = 'container = { kind = "sphere", radius = 9 }\n'
@@ -169,6 +170,9 @@ BAD_SCENES = [
     SPHERE + '[spheres]\nradius = { distribution = "rosin_rammler", d63 = 1, n = 2, min = 0.1 }\n',
     SPHERE + '[spheres]\nradius = { distribution = "mixture", of = [1, { distribution = "lognormal", d43 = 2, '
              'd32 = 1 }], shares = [1, 1] }\n',
+    SPHERE + '[spheres]\nradius = { distribution = "percentiles", d10 = 1, d90 = 2 }\n',
+    SPHERE + '[spheres]\nradius = { distribution = "histogram", edges = [1, 2], counts = [1], masses = [1] }\n',
+    SPHERE + '[spheres]\nradius = { distribution = "list", values = [1], file = "a.csv" }\n',
     SPHERE + '[spheres]\nradius = { median = 1 }\n',
     SPHERE + '[spheres]\ndiameter = { distribution = "lognormal" }\n',
     SPHERE + '[spheres]\ndiameter = { distribution = "lognormal", d43 = 1 }\n',

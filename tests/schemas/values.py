@@ -5,7 +5,8 @@ from dataclasses import dataclass
 # What rules between keys ask of those that are given together.
 FITTING = {
     "max": "5", "d43": "2", "d32": "1", "values": "[1, 2]", "shares": "[1, 1]", "x": "[1, 2]",
-    "density": "[0, 1]", "sizes": "[1, 2]", "passing": "[0, 100]", "of": "[1, 2]", "dimension": "3",
+    "density": "[0, 1]", "sizes": "[1, 2]", "passing": "[0, 100]",
+    "retained": "[100, 0]", "edges": "[1, 2, 3]", "counts": "[1, 1]", "masses": "[1, 1]", "of": "[1, 2]", "dimension": "3",
     "vertices": "[[0, 0], [9, 0], [0, 9]]", "contact": '"gap"',
 }
 GOOD = {
@@ -58,7 +59,8 @@ def good_values(key):
 
 
 def bad_values(key, seen):
-    values = list(some(BAD[key["type"]], seen, ("bad", key["type"])))
+    from_zero = key["type"] == "lengths" and key["min"] == 0
+    values = list(some(BAD["amounts" if from_zero else key["type"]], seen, ("bad", key["type"], from_zero)))
     if key["type"] == "flag" and key["min"]:
         values.append("false")
     if key["type"] in ("integer", "number"):

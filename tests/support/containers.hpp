@@ -49,6 +49,14 @@ inline std::vector<ContainerUnderTest> containers_under_test() {
       localized("BoxBetweenFourWallsFarAway", Box{{3e3, 0, -1e4}, {1, 1.4, 0.8}, {false, true, false}}),
       localized("Sphere", Sphere{{0, 0, 0}, 1}),
       localized("SphereFarAway", Sphere{{-7e3, 123.456, 1e4}, 0.6}),
+      localized("Cone", Revolved{.profile = {{0, 0}, {1, 0}, {0, 1.5}}}),
+      localized("ObliqueFrustum", Revolved{{1, 2, 3}, {1, -2, 0.5}, {{0, 0}, {0.4, 0}, {1, 1.2}, {0, 1.2}}}),
+      localized("FlatConeFarAway", Revolved{{2e3, 1e3, 0}, {0, -2, 0}, {{0, 0}, {3, 0.05}, {0, 0.6}}}),
+      localized("Tube", Revolved{.profile = {{0.4, 0}, {1, 0}, {1, 1.6}, {0.4, 1.6}}}),
+      localized("Hopper", Revolved{.profile = {{0, 0}, {0.2, 0}, {0.2, 0.2}, {1, 1}, {1, 2}, {0, 2}}}),
+      localized("ObliqueFlask", Revolved{{0, 0, 0},
+                                         {1, 1, 3},
+                                         {{0, 2}, {0.25, 2}, {0.3, 1.2}, {1, 0.6}, {0.9, 0}, {0, 0.2}}}),
       localized("CubeMesh", box_mesh({0, 0, 0}, {1, 1, 1})),
       localized("PrismMesh", prism_mesh(8, 1, 2)),
       localized("LShapeMeshFarAway", translated(l_shape_mesh(), {1e4, -2e4, 3e4})),
@@ -87,6 +95,20 @@ inline long double precise_clearance(const Domain& shape, const Vector<3>& point
     const Real least = std::min(lateral, axial);
     if (least >= 0) return least;
     return -std::hypot(std::min<Real>(lateral, 0), std::min<Real>(axial, 0));
+  }
+  if (const auto* revolved = std::get_if<Revolved>(&shape)) {
+    const Point<Real> axis(revolved->axis), w = p - Point<Real>(revolved->base);
+    const Point<Real> at(norm(cross(w, axis)) / norm(axis), dot(w, axis) / norm(axis), 0);
+    Real least = std::numeric_limits<Real>::infinity();
+    bool inside = false;
+    const auto& corners = revolved->profile;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Vector<2>&u = corners[k], &v = corners[(k + 1) % corners.size()];
+      const Point<Real> a(u[0], u[1], 0), b(v[0], v[1], 0);
+      if (u[0] > 0 || v[0] > 0) least = std::min(least, norm(precise_offset(at, a, b)));
+      if ((a.y > at.y) != (b.y > at.y)) inside ^= at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x);
+    }
+    return inside ? least : -least;
   }
   const Mesh& mesh = std::get<Mesh>(shape);
   Real squared = std::numeric_limits<Real>::infinity(), solid_angle = 0;

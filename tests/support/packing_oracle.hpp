@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "bernal/core/spheres.hpp"
@@ -119,6 +120,28 @@ inline bool inside(const Vector<dynamic>& center, double radius, const Domain& s
     if (cylinder->periodic) return room >= 0 && from_axis_squared <= room * room;
     return signed_height >= r * r && signed_height <= signed_square(Rational(cylinder->height) - r) &&
            room >= 0 && from_axis_squared <= room * room;
+  }
+  if (const auto* revolved = std::get_if<Revolved>(&shape)) {
+    // In two hundred digits: what is nearer than a 1e-100th touches.
+    using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<200>,
+                                               boost::multiprecision::et_off>;
+    const Point a = point(revolved->axis), w = c - point(revolved->base);
+    const Rational h = dot(w, a), aa = dot(a, a), across = dot(w, w) - h * h / aa;
+    const Real z = Real(h) / sqrt(Real(aa)), rho = sqrt(Real(across));
+    Real least = 1e100;
+    bool odd = false;
+    for (std::size_t k = 0; k < revolved->profile.size(); ++k) {
+      const Vector<2>&p = revolved->profile[k], &q = revolved->profile[(k + 1) % revolved->profile.size()];
+      if (p[0] == 0 && q[0] == 0) continue;
+      const Real er = Real(q[0]) - Real(p[0]), ez = Real(q[1]) - Real(p[1]), ee = er * er + ez * ez;
+      if (ee == 0) continue;
+      const Real s = (rho - Real(p[0])) * er + (z - Real(p[1])) * ez;
+      const Real share = s < 0 ? Real(0) : s > ee ? Real(1) : Real(s / ee);
+      const Real dr = rho - Real(p[0]) - share * er, dz = z - Real(p[1]) - share * ez;
+      least = std::min(least, Real(sqrt(dr * dr + dz * dz)));
+      if ((Real(p[1]) > z) != (Real(q[1]) > z)) odd ^= rho < Real(p[0]) + (z - Real(p[1])) / ez * er;
+    }
+    return odd && least >= Real(radius) - Real(1e-100);
   }
   const auto& mesh = std::get<Mesh>(shape);
   for (const auto& t : mesh.triangles) {

@@ -103,6 +103,22 @@ inline Gap wall_gap(const Vector<dynamic>& c, double r, const Domain& domain) {
     if (cylinder->periodic) return {lateral, 16 * eps * size};
     return {std::min({lateral, along - r, (cylinder->height - along) - r}), 16 * eps * size};
   }
+  if (const auto* revolved = std::get_if<Revolved>(&domain)) {
+    const Vector<3> axis = revolved->axis.normalized(), w = Vector<3>(c) - revolved->base;
+    const double z = w.dot(axis), rho = (w - z * axis).norm();
+    double least = std::numeric_limits<double>::infinity(), size = w.norm();
+    bool inside = false;
+    for (std::size_t k = 0; k < revolved->profile.size(); ++k) {
+      const Vector<2> a = revolved->profile[k], b = revolved->profile[(k + 1) % revolved->profile.size()];
+      size = std::max(size, a.norm());
+      if ((a[1] > z) != (b[1] > z)) inside ^= rho < a[0] + (z - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+      if (a[0] == 0 && b[0] == 0) continue;
+      const Vector<2> e = b - a, to = Vector<2>(rho, z) - a;
+      const double t = e.squaredNorm() > 0 ? std::clamp(to.dot(e) / e.squaredNorm(), 0.0, 1.0) : 0.0;
+      least = std::min(least, (to - t * e).norm());
+    }
+    return {(inside ? least : -least) - r, 32 * eps * size};
+  }
   const Mesh& mesh = std::get<Mesh>(domain);
   const Bounds<3> bounds = bounds_of(domain);
   const double size = (bounds.upper - bounds.lower).norm();

@@ -55,6 +55,9 @@ inline Domain scaled(Domain shape, double factor) {
   } else if (auto* polygon = std::get_if<Polygon>(&shape)) {
     for (auto& loop : polygon->loops)
       for (Vector<2>& v : loop) v *= factor;
+  } else if (auto* revolved = std::get_if<Revolved>(&shape)) {
+    revolved->base *= factor;
+    for (Vector<2>& v : revolved->profile) v *= factor;
   } else {
     for (Vector<3>& v : std::get<Mesh>(shape).vertices) v *= factor;
   }
@@ -71,6 +74,8 @@ inline Domain shifted(Domain shape, const Vector<3>& by) {
   } else if (auto* polygon = std::get_if<Polygon>(&shape)) {
     for (auto& loop : polygon->loops)
       for (Vector<2>& v : loop) v += by.head<2>();
+  } else if (auto* revolved = std::get_if<Revolved>(&shape)) {
+    revolved->base += by;
   } else {
     for (Vector<3>& v : std::get<Mesh>(shape).vertices) v += by;
   }

@@ -66,6 +66,13 @@ Real precise_distance(const Facet& f, const Point<Real>& p) {
     }
     case Facet::Kind::sphere:
       return Real(f.radius) - norm(p - a);
+    case Facet::Kind::frustum: {
+      const Point<Real> w = p - a;
+      const Real z = dot(w, b) / norm(b);
+      const Point<Real> across = w - Real(z / norm(b)) * b;
+      return norm(precise_offset(Point<Real>(norm(across), z, 0), Point<Real>(f.c[0], 0, 0),
+                                 Point<Real>(f.c[1], f.c[2], 0)));
+    }
     case Facet::Kind::triangle:
       break;
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bernal/sizes/percentiles.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal::testing {
@@ -78,6 +79,29 @@ inline double sieve_law(double r) {
   return octave < 1 ? 0.3 * octave : octave < 2 ? 0.3 : 0.3 + 0.7 * (octave - 2);
 }
 
+/// Bins from 1 to 2 and from 3 to 5 with 1 : 3 of the whole, and an empty one between them.
+inline double histogram_law(double r) {
+  const double x = std::clamp(r, 1.0, 5.0);
+  return x < 2 ? 0.25 * (x - 1) : x < 3 ? 0.25 : 0.25 + 0.375 * (x - 3);
+}
+
+/// Through 10 % at 1, 40 % at 2 and 90 % at 4: 0.3 an octave up to 2, and 0.5 from there on.
+inline double through_law(double r) {
+  const double octave = std::log2(r);
+  return std::clamp(octave < 1 ? 0.1 + 0.3 * octave : 0.4 + 0.5 * (octave - 1), 0.0, 1.0);
+}
+
+/// The percentiles 10, 50 and 90 of a law that has the quantile q.
+template <class Quantile>
+std::vector<Percentile> percentiles_of(Quantile q) {
+  return {{0.1, q(0.1)}, {0.5, q(0.5)}, {0.9, q(0.9)}};
+}
+/// Of the standard normal distribution, at these three.
+inline double standard_quantile(double p) {
+  constexpr double at_nine_tenths = 1.2815515655446004;
+  return p < 0.5 ? -at_nine_tenths : p > 0.5 ? at_nine_tenths : 0;
+}
+
 inline std::unique_ptr<SizeDistribution> mixture_of(std::unique_ptr<SizeDistribution> a,
                                                     std::unique_ptr<SizeDistribution> b, double share_of_a,
                                                     Basis basis) {
@@ -129,6 +153,60 @@ inline std::vector<SizeCase> size_cases() {
        cut(lognormal_law(1, 0.5), 0.5, 1.5)},
       {"lognormal_cut_volume", [] { return make_lognormal(1, 0.5, volume, 0.5, 1.5); }, volume,
        cut(lognormal_law(1, 0.5), 0.5, 1.5)},
+
+      {"lognormal_of_mean", [] { return make_lognormal_of_mean(3, 0.8, number, 0, infinity); }, number,
+       lognormal_law(3 / std::sqrt(1 + 0.64 / 9), std::sqrt(std::log(1 + 0.64 / 9)))},
+
+      {"percentiles_lognormal",
+       [] {
+         return make_from_percentiles(
+             percentiles_of([](double p) { return 2 * std::exp(0.3 * standard_quantile(p)); }),
+             PercentileLaw::lognormal, volume, 0, infinity);
+       },
+       volume, lognormal_law(2, 0.3)},
+      {"percentiles_normal",
+       [] {
+         return make_from_percentiles(percentiles_of([](double p) { return 7 + standard_quantile(p); }),
+                                      PercentileLaw::normal, number, 0, infinity);
+       },
+       number, normal_law(7, 1)},
+      {"percentiles_rosin_rammler",
+       [] {
+         return make_from_percentiles(
+             percentiles_of([](double p) { return 2 * std::pow(-std::log(1 - p), 1.0 / 3); }),
+             PercentileLaw::rosin_rammler, volume, 0.5, 4);
+       },
+       volume, cut(weibull_law(2, 3), 0.5, 4)},
+      {"percentiles_rosin_rammler_by_number",
+       [] {
+         return make_from_percentiles(
+             percentiles_of([](double p) { return 2 * std::pow(-std::log(1 - p), 1.0 / 3); }),
+             PercentileLaw::rosin_rammler, number, 0.5, 4);
+       },
+       number, cut(weibull_law(2, 3), 0.5, 4)},
+      {"percentiles_through",
+       [] {
+         return make_from_percentiles({{0.1, 1}, {0.4, 2}, {0.9, 4}}, PercentileLaw::through, volume, 0,
+                                      infinity);
+       },
+       volume, through_law},
+      {"percentiles_through_by_number",
+       [] {
+         return make_from_percentiles({{0.1, 1}, {0.4, 2}, {0.9, 4}}, PercentileLaw::through, number, 0,
+                                      infinity);
+       },
+       number, through_law},
+
+      {"histogram_counts",
+       [] {
+         return make_histogram({1, 2, 3, 5}, {2, 0, 6}, number);
+       },
+       number, histogram_law},
+      {"histogram_masses",
+       [] {
+         return make_histogram({1, 2, 3, 5}, {2, 0, 6}, Basis::mass);
+       },
+       volume, histogram_law},
 
       {"table_line",
        [] {

@@ -159,20 +159,22 @@ TEST_F(AbsurdWishes, WhatFitsNowhereNamesTheLargestThatFits) {
   EXPECT_GT(plan.expected_count, 0);
 }
 
-TEST_F(AbsurdWishes, AMeanOfLognormalSizesIsToldItsKeys) {
+TEST_F(AbsurdWishes, AMeanOfLognormalSizesIsTakenAndItsOtherNamesAreTold) {
   const auto of = [](const std::string& keys) {
     return equal_in(3).replace(equal_in(3).find("radius = 1"), 10,
                                "radius = { distribution = \"lognormal\", " + keys + " }");
   };
-  // median = m / sqrt(1 + (s/m)²) and sigma² = ln(1 + (s/m)²).
-  expect_refused(of("mean = 3, sd = 0.8"), {"\"mean\"", "median = 2.8987", "sigma = 0.2621"});
-  expect_refused(of("mean = 3"), {"\"mean\"", "median = m / sqrt(1 + (s/m)^2)"});
-  expect_refused(of("median = 3, std = 0.8"), {"\"std\"", "sigma = sqrt(ln"});
-  expect_refused(of("d50 = 3, sigma = 0.2"), {"\"d50\"", "basis = \"volume\""});
-  const Error error = error_of([&] { scene(of("mean = 3, sd = 0.8")); });
+  const auto sizes = radii_of(scene(of("mean = 3, sd = 0.8")));
+  EXPECT_NEAR(sizes->moment(1), 3, 1e-14);
+  EXPECT_NEAR(std::sqrt(sizes->moment(2) - 9), 0.8, 1e-14);
+  expect_refused(of("mean = 3"), {"missing \"sd\""});
+  expect_refused(of("mean = 3, sigma = 0.2"), {"\"mean\"", "\"sigma\"", "exclude each other"});
+  expect_refused(of("mean = 3, std = 0.8"), {"\"std\"", "is \"sd\""});
+  expect_refused(of("mean = 3, variance = 0.64"), {"\"variance\"", "here sd = 0.8"});
+  expect_refused(of("mean = 3, cv = 0.2"), {"\"cv\"", "here sd = 0.6"});
+  expect_refused(of("d50 = 3, sigma = 0.2"), {"\"d50\"", "basis = \"volume\"", "percentiles"});
+  const Error error = error_of([&] { scene(of("mean = 3, std = 0.8")); });
   EXPECT_EQ(std::string(error.what()).find("did you mean"), std::string::npos) << error.what();
-  const Packing as_told = packed(of("median = 2.8987, sigma = 0.2621"));
-  EXPECT_EQ(as_told.spheres.size(), 40U);
 }
 
 TEST_F(AbsurdWishes, AStartIsCheckedBeforeItIsRun) {

@@ -155,7 +155,7 @@ Motion random_motion(Random& random, const Facet& f, Start start, Aim aim) {
 }
 
 const char* name_of(Facet::Kind kind) {
-  constexpr const char* names[] = {"Plane", "Cylinder", "Sphere", "Triangle"};
+  constexpr const char* names[] = {"Plane", "Cylinder", "Sphere", "Triangle", "Frustum"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
+#include "support/containers.hpp"
 #include "support/measured.hpp"
 #include "support/packings.hpp"
 #include "support/periodic.hpp"
@@ -99,14 +101,77 @@ TEST(RadialDistribution, SaysWhereTheSecondPeakSplits) {
 
 TEST(RadialDistribution, IsOnlyThereWhereItMeansSomething) {
   const Box box{Vector<3>::Zero(), Vector<3>::Constant(10)};
-  EXPECT_FALSE(
+  EXPECT_TRUE(
       radial_distribution(testing::packing_of(testing::scattered(50, 0.5, 1, bounds_of(box), 1), box)));
+  Spheres<dynamic> discs(2);
+  discs.push_back(Vector<2>(1, 1), 1);
+  discs.push_back(Vector<2>(3, 1), 1);
+  EXPECT_FALSE(radial_distribution(discs, Box{Vector<2>::Zero(), Vector<2>(4, 4)}));
   const Vector<2> edges(10, 10);
   EXPECT_FALSE(radial_distribution(periodic_packing<2>({}, edges)));
   EXPECT_FALSE(radial_distribution(periodic_packing<2>(ideal_gas<2>(1, 1, 1, edges, 1), edges)));
   const auto two = radial_distribution(periodic_packing<2>(ideal_gas<2>(2, 1, 1, edges, 1), edges));
   ASSERT_TRUE(two);
   EXPECT_NEAR(two->bin_width * static_cast<double>(two->g.size()), 5, 1e-9);  // half the edge
+}
+
+/// Places at random where a sphere of that radius lies inside, and below a height.
+Spheres<3> gas_inside(const Domain& domain, double r, std::size_t n, double below) {
+  const Frame frame = frame_of(domain);
+  const auto container = local_container(domain, {});
+  Random random(5, stream(Stream::test));
+  Spheres<3> spheres;
+  while (spheres.size() < n) {
+    const Vector<3> p = uniform_point(random, bounds_of(domain));
+    if (p[2] <= below && container->clearance(frame.to_local(p)) >= r / frame.scale) spheres.push_back(p, r);
+  }
+  return spheres;
+}
+
+TEST(RadialDistribution, OfAnIdealGasBetweenWallsIsOne) {
+  const double r = 0.2;
+  const std::pair<const char*, Domain> domains[] = {
+      {"box", Box{{1, 2, 3}, {4, 5, 3}}},
+      {"between two walls", Box{{0, 0, 0}, {5, 4, 3}, {true, true, false}}},
+      {"cylinder", Cylinder{.base = {1, 0, 0}, .radius = 2, .height = 5}},
+      {"ball", Sphere{.center = {1, 1, 1}, .radius = 2.5}},
+      {"mesh", Domain(test::box_mesh({0, 0, 0}, {4, 4, 3}))}};
+  for (const auto& [name, domain] : domains) {
+    SCOPED_TRACE(name);
+    const double top = bounds_of(domain).upper[2];
+    for (const bool is_bed : {false, true}) {
+      RadialOptions options{.bin = 0.25};
+      if (is_bed) options.below = LowerPart{-Vector<3>::UnitZ(), top - 0.9};
+      const Spheres<3> gas = gas_inside(domain, r, 1500, is_bed ? top - 0.9 : top);
+      const auto found = radial_distribution(gas, domain, options);
+      ASSERT_TRUE(found);
+      ASSERT_GT(found->g.size(), 10u);
+      ASSERT_EQ(found->share.size(), found->g.size());
+      for (std::size_t k = 1; k < found->g.size(); ++k)
+        EXPECT_NEAR(found->g[k], 1, 5 * found->error[k] + 0.01) << found->r[k];
+      EXPECT_NEAR(found->share.front(), 1, 0.1);
+      EXPECT_LT(found->share.back(), 0.9);
+    }
+  }
+}
+
+TEST(RadialDistribution, OfSpheresAboveTheLevelCountsNone) {
+  Spheres<3> spheres;
+  spheres.push_back({2, 2, 1}, 0.5);
+  spheres.push_back({3, 2, 1}, 0.5);
+  spheres.push_back({2, 3, 5}, 0.5);
+  spheres.push_back({3, 3, 5}, 0.5);
+  const Box box{Vector<3>::Zero(), Vector<3>(5, 5, 8)};
+  const auto pairs = [&](const RadialDistribution& found) {
+    double sum = 0;
+    for (const double g : found.g) sum += g > 0;
+    return sum;
+  };
+  const auto all = radial_distribution(spheres, box), bed = radial_distribution(
+      spheres, box, {.below = LowerPart{-Vector<3>::UnitZ(), 3}});
+  ASSERT_TRUE(all && bed);
+  EXPECT_EQ(pairs(*all), 3);  // at 1, and from one pair to the other at 4.123 and 4.243
+  EXPECT_EQ(pairs(*bed), 1);
 }
 
 }  // namespace radial_distribution_test

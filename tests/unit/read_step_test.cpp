@@ -209,6 +209,10 @@ TEST_F(ReadStep, AnAssemblyOfOtherFilesReadsThoseBesideAndNamesTheRest) {
   EXPECT_FALSE(notes(all, "other files"));
   EXPECT_NEAR(diagnosed(all.soup).volume, 2 * 10 * 20 * 30 + pi * 25 * 10, 10);
   EXPECT_EQ(files_of_part(assembly).size(), 3U);
+  const std::vector<std::string> said = read_mesh({.file = assembly}).report.notes;
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& note) {
+    return note == "the file refers to others, which were read with it: part_box.stp, part_cyl.stp";
+  }));
 }
 
 // Two boxes of which one stands against the other, as loose surfaces: sewn together they would be one wall
@@ -225,7 +229,23 @@ TEST_F(ReadStep, PartsThatTouchAreSewnApart) {
   const ImportedMesh as_it_is = read_mesh(file);
   EXPECT_FALSE(as_it_is.report.usable());
   const std::vector<std::string> lines = lines_that_help(file, {}, as_it_is, Effort::quick);
-  EXPECT_EQ(lines, std::vector<std::string>{"solids = [\"1\"]"});
+  EXPECT_EQ(lines, (std::vector<std::string>{"solids = [\"1\"]", "solids = [\"2\"]"}));
+}
+
+TEST_F(ReadStep, EachSolidOfAnAssemblyIsOfferedAsItWasTried) {
+  const MeshFile file{.file = std::filesystem::path(BERNAL_DATA) / "meshes/assembly_inch.step"};
+  const ImportedMesh all = read_mesh(file);
+  ASSERT_TRUE(all.report.usable());
+  // Two of the three bear one name, so that only their numbers tell them apart.
+  const std::vector<std::string> lines = lines_that_help(file, {}, all, Effort::thorough);
+  EXPECT_EQ(lines, (std::vector<std::string>{"solids = [\"1\"]", "solids = [\"2\"]", "solids = [\"ball\"]"}));
+  double volume = 0;
+  for (const char* solid : {"1", "2", "ball"}) {
+    MeshFile one = file;
+    one.solids = {solid};
+    volume += read_mesh(one).report.volume;
+  }
+  EXPECT_NEAR(volume, all.report.volume, 1e-9 * volume);
 }
 
 TEST_F(ReadStep, AnAssemblyInInchIsPlacedNamedAndConverted) {

@@ -24,7 +24,10 @@ const std::map<std::string, std::string, std::less<>> stated = {
     {"sieve", "sizes = [3, 1, 2], passing = [100, 0, 20]"},
     {"rosin_rammler", "d63 = 2, n = 1, min = 1, max = 3"},
     {"fuller", "max = 3, min = 1"},
-    {"mixture", "of = [1.5, { distribution = \"uniform\", min = 1, max = 3 }], shares = [1, 2]"}};
+    {"mixture", "of = [1.5, { distribution = \"uniform\", min = 1, max = 3 }], shares = [1, 2]"},
+    {"percentiles", "d10 = 1.5, d50 = 2, d90 = 2.5, min = 1, max = 3"},
+    {"histogram", "edges = [1, 2, 3], counts = [3, 1]"},
+    {"list", "values = [3, 1, 1.5]"}};
 
 Scene scene_of(std::string_view key, std::string_view distribution, std::string_view keys) {
   return parse_scene(fmt::format("container = {{ kind = \"sphere\", radius = 9 }}\n[spheres]\n"
@@ -46,7 +49,7 @@ TEST(SizeCatalogue, MakesWhatTheSchemaNames) {
 
 TEST(SizeCatalogue, RadiiAreTwiceWhatDiametersOfTheSameLengthsGive) {
   for (const auto& [name, keys] : stated) {
-    if (name == "rosin_rammler") continue;  // its d63 is a diameter by its name
+    if (name == "rosin_rammler" || name == "percentiles") continue;  // d63, d10: diameters by their names
     const auto radii = radii_of(scene_of("radius", name, keys));
     const auto halves = radii_of(scene_of("diameter", name, keys));
     for (const double p : {0.0, 0.01, 0.3, 0.5, 0.99, 1.0})
@@ -58,7 +61,8 @@ TEST(SizeCatalogue, RefusesWhatOnlyTheNumbersTogetherShowAtItsLine) {
   const std::map<std::string, std::pair<std::string, std::string>> bad = {
       {"normal", {"mean = 1, sd = 0.3", "cut it off with \"min\""}},
       {"rosin_rammler", {"d63 = 1, n = 5, min = 4", "lies above \"min\""}},
-      {"lognormal", {"median = 1, sigma = 0.01, min = 1e6", "no radius"}}};
+      {"lognormal", {"median = 1, sigma = 0.01, min = 1e6", "no radius"}},
+      {"percentiles", {"d10 = 1, d50 = 2, law = \"normal\"", "cut it off with \"min\""}}};
   for (const auto& [name, what] : bad) {
     try {
       radii_of(scene_of("diameter", name, what.first));

@@ -62,7 +62,7 @@ TEST(StructureFactor, IsTheSumOverAllPairs) {
   const Vector<3> edges(2, 3, 1);
   Packing packing = periodic_packing<3>(ideal_gas<3>(37, 0.1, 0.2, edges, 9), edges);
   const StructureFactor found = factor_of(packing, {.bin = 0.02, .reach = 4});
-  const auto vectors = wave_vectors<3>(edges, found.bin_width, 200, 400);
+  const auto vectors = wave_vectors<3>(edges, found.bin_width, std::vector<std::size_t>(200, 400));
   std::size_t b = 0;
   for (const auto& bin : vectors) {
     if (bin.empty()) continue;
@@ -91,7 +91,7 @@ TEST(StructureFactor, OfFccHasItsBraggPeaksAndNothingElse) {
   const StructureFactor found = factor_of(packing, {.bin = 0.05, .reach = 9});
   const Vector<3> edges = Vector<3>::Constant(cells * std::sqrt(2.0));
   std::size_t b = 0, peaks = 0;
-  for (const auto& bin : wave_vectors<3>(edges, found.bin_width, 180, 400)) {
+  for (const auto& bin : wave_vectors<3>(edges, found.bin_width, std::vector<std::size_t>(180, 400))) {
     if (bin.empty()) continue;
     double bragg = 0;
     for (const auto& [n, length] : bin) {
@@ -129,6 +129,23 @@ TEST(StructureFactor, IsTheFourierTransformOfGOfR) {
   }
   ASSERT_GT(count, 50);
   EXPECT_LT(std::sqrt(squares / count), 0.06);
+}
+
+TEST(StructureFactor, HasEnoughWaveVectorsAtTheFirstPeakHoweverManySpheresThereAre) {
+  const Vector<3> edges = Vector<3>::Constant(20);
+  const Packing packing =
+      periodic_packing<3>(scattered(5000, 0.4999, 0.5, Bounds<3>{Vector<3>::Zero(), edges}, 3), edges);
+  const StructureFactor found = factor_of(packing, {.work = 1});
+  for (std::size_t b = 0; b < found.k.size(); ++b) {
+    const double k = found.k[b] * found.mean_diameter;
+    if (k > 3) {
+      EXPECT_EQ(found.vectors[b], k > 4 && k < 10 ? 200u : 24u) << k;
+    }
+  }
+  const auto peak = found.peak(), precise = factor_of(packing, {.work = 1e9}).peak();
+  ASSERT_TRUE(peak && precise);
+  EXPECT_NEAR(peak->s, precise->s, 4 * peak->error);
+  EXPECT_LT(peak->error, 0.12 * peak->s);
 }
 
 TEST(StructureFactor, OfBoxesLikeNeedlesAndOfFewSpheres) {

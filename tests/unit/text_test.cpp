@@ -90,5 +90,20 @@ TEST(WithOptions, NamesThemAsTheFrontEndDoes) {
   EXPECT_EQ(with_options("‹‹box››", loud), "‹<box|>›");
 }
 
+TEST(InDimension, SpheresOfThePlaneAreDiscs) {
+  EXPECT_EQ(in_dimension(2, "all 12 spheres are placed; every sphere rests"),
+            "all 12 discs are placed; every disc rests");
+  EXPECT_EQ(in_dimension(2, "Spheres. The sphere's centre; spheres, (sphere) hard-spheres."),
+            "Discs. The disc's centre; discs, (disc) hard-discs.");
+  for (const int dimension : {1, 3, 4}) EXPECT_EQ(in_dimension(dimension, "2 spheres"), "2 spheres");
+  // Names of keys and files, and words of which it is a part.
+  for (const char* text : {"[spheres]", "kind = \"sphere\"", "spheres.csv", "out/spheres/a", "spherefoam",
+                           "atmosphere", "most_spheres", "spheres_of", "class=\"spheres\"", ""})
+    EXPECT_EQ(in_dimension(2, text), text);
+  // Columns of a table stay where they are.
+  EXPECT_EQ(in_dimension(2, "spheres    12\n    share  spheres  fraction\n   spheres\n"),
+            "discs      12\n    share  discs    fraction\n     discs\n");
+}
+
 }  // namespace text_test
 }  // namespace bernal

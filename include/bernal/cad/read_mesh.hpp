@@ -52,13 +52,20 @@ ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose = {});
 /// remedies in one line if it cannot be one.
 ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose);
 
+/// The unit that a CAD file says of itself, as those of STEP, IGES, 3MF, AMF and glTF do. Throws
+/// Error{bad_argument} where it says none, or one in which no scene can be, and as `read_mesh`. Cost: reads
+/// the file.
+Unit unit_of_mesh_file(const std::filesystem::path& file);
+
 enum class Effort {
   quick,    ///< about as long as reading the file takes
   thorough  ///< also tries a coarse wrap
 };
 
-/// Lines for [container] that turn a file that is no container into one; each was tried. The line that
-/// changes least comes first; empty if nothing helps. Lengths are in the unit of `purpose`.
+/// Lines for [container] that turn a file that is no container into one, the line that changes least first;
+/// of a file that is one, lines for what may be meant instead: its hollow, each of its solids. Each was tried
+/// as it stands (with a line break: both lines together); empty if nothing helps. Lengths are in the unit of
+/// `purpose`.
 std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFor& purpose,
                                          const ImportedMesh& as_it_is, Effort effort);
 

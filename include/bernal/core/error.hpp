@@ -29,6 +29,8 @@ class Error : public std::runtime_error {
   Error(ErrorCode code, const std::string& message, Location location = {});
   ErrorCode code() const { return code_; }
   const Location& location() const { return location_; }
+  /// Without the location.
+  std::string message() const;
 
  private:
   ErrorCode code_;

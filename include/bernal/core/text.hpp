@@ -41,6 +41,11 @@ using OptionInWords = std::function<std::string(std::string_view name, std::stri
 /// ‹unit=mm›". Where there is no name between such marks they stay as they are.
 std::string with_options(std::string_view message, const OptionInWords& in_words);
 
+/// Words for people of a packing of so many dimensions: in two its spheres are called discs. What is between
+/// quotation marks or in brackets, such as a key, and names of files, such as spheres.csv, stay; a word that
+/// stands in a column takes as much room as before.
+std::string in_dimension(int dimension, std::string_view text);
+
 /// 28312 as "28,312".
 std::string grouped(std::uint64_t n);
 

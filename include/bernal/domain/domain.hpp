@@ -71,9 +71,36 @@ struct Polygon {
 /// Exact. Cost: O(n log n), and every pair of edges whose bounds overlap.
 void require_simple(const Polygon&);
 
-using Domain = std::variant<Box, Cylinder, Sphere, Mesh, Polygon>;
+/// A solid of revolution: the points at the distance r from the axis line and the height z = (p - base)·a, with
+/// a = axis / |axis|, such that (r, z) lies in the polygon whose corners the profile names in their order, in
+/// either sense; the last is joined to the first. `axis` need not be of unit length. Edges on the axis are
+/// no walls. The distance of a point from the wall is that of its (r, z) from the other edges. See
+/// `require_profile`.
+struct Revolved {
+  Vector<3> base = Vector<3>::Zero();
+  Vector<3> axis = Vector<3>::UnitZ();
+  std::vector<Vector<2>> profile = {};
+  double inset = 0;  ///< as that of a mesh
 
-/// "box", "cylinder", "sphere", "mesh", "polygon"; "periodic" for a box that repeats itself along some axis.
+  /// Calls visit(a, b) for the edges that are walls.
+  template <class Visit>
+  void for_each_edge(const Visit& visit) const {
+    for (std::size_t k = 0; k < profile.size(); ++k) {
+      const Vector<2>&a = profile[k], &b = profile[(k + 1) % profile.size()];
+      if (a != b && (a[0] != 0 || b[0] != 0)) visit(a, b);
+    }
+  }
+};
+
+/// Throws Error{bad_argument} with one line unless base and axis are finite, the axis is not zero, no corner
+/// of the profile has a negative distance from it, and its edges meet nowhere but at the ends of neighbours,
+/// see `require_simple`. Exact.
+void require_profile(const Revolved&);
+
+using Domain = std::variant<Box, Cylinder, Sphere, Mesh, Polygon, Revolved>;
+
+/// "box", "cylinder", "sphere", "mesh", "polygon", "revolved"; "periodic" for a box that repeats itself along
+/// some axis.
 std::string_view kind_of(const Domain&);
 /// What to call it in a sentence: "cylinder", "periodic cylinder", "periodic box", "box periodic but along
 /// axis 2".
@@ -84,12 +111,14 @@ int dimension_of(const Domain&);
 bool has_walls(const Domain&);
 /// Whether it repeats itself along some axis.
 bool is_periodic(const Domain&);
-/// Whether its walls are facets, which may leave room anywhere: a mesh or a polygon.
+/// Whether its walls are many pieces, which may leave room anywhere: a mesh, a polygon or a solid of
+/// revolution.
 inline bool is_faceted(const Domain& domain) {
-  return std::holds_alternative<Mesh>(domain) || std::holds_alternative<Polygon>(domain);
+  return std::holds_alternative<Mesh>(domain) || std::holds_alternative<Polygon>(domain) ||
+         std::holds_alternative<Revolved>(domain);
 }
 /// How many independent motions, shifts and turns, take the domain into itself for as far as they go: a shift
-/// along each axis that repeats itself, a turn about the axis of a cylinder, three about a sphere's centre. A
+/// along each axis that repeats itself, a turn about the axis of a cylinder or of a profile, three about a sphere's centre. A
 /// mesh or a polygon has none.
 int symmetries_of(const Domain&);
 
@@ -111,8 +140,8 @@ Boundary<3> boundary_in_space(const Domain&);
 /// The domain with all its walls moved inwards by so much, or outwards where that is negative; what repeats
 /// itself stays as it is. Rounded inwards, by some roundoffs of the coordinates, and not at all where every
 /// sum is a double: a ball of radius r that lies inside has a clearance of r + `by` from the walls before.
-/// Sizes become negative where nothing is left. Throws Error{bad_argument} for a mesh or a polygon that has
-/// an inset already.
+/// Sizes become negative where nothing is left. Throws Error{bad_argument} for a mesh, a polygon or a solid
+/// of revolution that has an inset already.
 Domain with_walls_moved(const Domain&, double by);
 
 /// Replaces every centre by its image in one period: that in [lower, lower + period) along axes that have

@@ -15,11 +15,15 @@ namespace bernal {
 /// | triangle | vertex           | vertex             | vertex | R      | |p - triangle| - R, negative only
 /// within R |
 ///
-/// A triangle without area, two of whose vertices are one, is a segment: an edge of a polygon. Its R is how
+/// | frustum  | a point of the axis | unit axis       | (r, s, h) | R   | |p - piece| - R, negative only
+/// within R |
+///
+/// A frustum is what the edge of a profile from (r, 0) to (s, h) is about its axis: a piece of a cone, of a
+/// cylinder from inside or from outside, a ring or a disc. A triangle without area, two of whose vertices are one, is a segment: an edge of a polygon. Its R is how
 /// far inside of it the wall stands, see `Mesh::inset`; 0 for most, and negative where it stands behind.
 struct Facet {
   using ArchivedAsBytes = void;
-  enum class Kind : std::uint8_t { plane, cylinder, sphere, triangle };
+  enum class Kind : std::uint8_t { plane, cylinder, sphere, triangle, frustum };
   Kind kind = Kind::plane;
   std::uint32_t id = 0;  ///< which facet of its container
   Vector<3> a = Vector<3>::Zero();
@@ -27,6 +31,11 @@ struct Facet {
   Vector<3> c = Vector<3>::Zero();
   double radius = 0;
 };
+
+/// Whether the nearest point may lie on a border of the piece: a triangle or a frustum.
+constexpr bool has_border(Facet::Kind kind) {
+  return kind == Facet::Kind::triangle || kind == Facet::Kind::frustum;
+}
 
 /// A facet and its distance from the point that asked.
 struct NearFacet {

@@ -10,6 +10,8 @@
 #include "bernal/measure/bed_profile.hpp"
 #include "bernal/measure/bond_order.hpp"
 #include "bernal/measure/chambers.hpp"
+#include "bernal/measure/column_profile.hpp"
+#include "bernal/measure/contact_list.hpp"
 #include "bernal/measure/contacts.hpp"
 #include "bernal/measure/local_packing.hpp"
 #include "bernal/measure/pore_sizes.hpp"
@@ -27,6 +29,7 @@ namespace bernal {
 struct Measurements {
   double packing_fraction = 0;
   Contacts contacts;             ///< at MeasureOptions::contact_gap
+  ContactSums of_contacts;       ///< at that gap
   std::vector<Contacts> by_gap;  ///< at the other gaps, in their order
   /// The smallest of these gaps at which at least half of the spheres are not rattlers. Stages leave gaps
   /// between spheres that they press together, and below those gaps the number of rattlers says nothing about
@@ -39,6 +42,7 @@ struct Measurements {
   std::optional<Chambers> chambers;
   std::optional<BedProfile> bed;  ///< if it has a level, walls and pores are measured below it
   std::optional<WallProfile> walls;
+  std::optional<ColumnProfile> column;  ///< up to the level of a bed, if it has one
   std::optional<BondOrder> order;
   std::optional<LocalPacking> local;
   std::optional<StructureFactor> structure;

@@ -1,10 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "bernal/core/spheres.hpp"
+#include "bernal/domain/container.hpp"
 #include "bernal/domain/domain.hpp"
+#include "bernal/measure/lower_part.hpp"
 
 namespace bernal {
 
@@ -13,13 +16,21 @@ namespace bernal {
 ///   g(r) = (mean number of centres in the shell from r - w/2 to r + w/2) / ((N - 1) / V · volume of the
 ///   shell).
 /// It is 1 for an ideal gas. Lengths are in the scene's unit.
+///
+/// Between walls, V is the volume of the places that a centre of the smallest sphere may have, and of every
+/// shell only the share that lies there counts: so walls alone leave g at 1, and what it shows near them is how
+/// spheres lie there. Of a bed, V ends at its level, and only spheres with their centre below it count.
 struct RadialDistribution {
   double mean_diameter = 0;
   double bin_width = 0;   ///< w
   std::vector<double> r;  ///< middle of the bin
   std::vector<double> g;
-  std::vector<double> error;     ///< standard error of g from counting; that of one pair if none was found
-  std::uint64_t references = 0;  ///< centres used as origin, evenly spread over the box
+  /// Standard error of g from counting, that of one pair if none was found; between walls also from `share`.
+  std::vector<double> error;
+  /// Between walls: of the shells about the centres, the mean share that lies inside, and its standard error.
+  /// Empty in periodic boxes.
+  std::vector<double> share, share_error;
+  std::uint64_t references = 0;  ///< centres used as origin, evenly spread
   double radius_spread = 0;      ///< standard deviation of the radii over their mean
 
   /// Local maxima of g near 1, √3 and 2 mean diameters, if present; empty if the radii spread by more than
@@ -34,15 +45,23 @@ struct RadialDistribution {
 
 struct RadialOptions {
   double bin = 0.02;  ///< of the mean diameter
-  double reach = 5;   ///< mean diameters; limited to half the shortest edge
+  double reach = 5;   ///< mean diameters; limited to half the shortest period, and between walls to `least_share`
   double work = 2e8;  ///< approximate number of distances computed; larger packings are sampled
+  /// Between walls: approximate number of places of which it is asked whether they are inside; a fifth of that
+  /// in a mesh.
+  double places = 4e6;
+  std::optional<LowerPart> below = {};  ///< between walls: the part that counts
+
+  /// Bins of which a smaller share lies inside are left out.
+  static constexpr double least_share = 0.05;
 };
 
-/// Absent if there are walls (with a free surface there is no density to compare with) and for fewer than two
-/// spheres. A distance below the start of a bin by up to 1e-6 of its width counts in that bin, so that
+/// Absent for fewer than two spheres, and between walls in other than three dimensions. A distance below the start of a bin by up to 1e-6 of its width counts in that bin, so that
 /// rounding does not split the contacts of equal spheres. Cost: min(options.work, O(N reach^D)), at about 2
-/// ns; memory O(N). Precondition: bin and reach positive.
+/// ns, between walls and options.places questions to them; memory O(N). `made`: as
+/// `MeasureOptions::container`. Precondition: bin and reach positive.
 std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>&, const Domain&,
-                                                      const RadialOptions& = {});
+                                                      const RadialOptions& = {},
+                                                      const std::shared_ptr<const Container>& made = {});
 
 }  // namespace bernal

@@ -59,11 +59,13 @@ struct SizeComparison {
   double volume_ratio_error = 0;  ///< its standard error for independent draws
 
   struct Quantile {
-    double share;     ///< of the number of spheres below
+    double share;     ///< of the spheres below
     double realised;  ///< radius
     double asked;     ///< infinite at share 1 for an unbounded tail
   };
   std::vector<Quantile> quantiles;
+  /// The same by volume, r^D: half of D10, D50 and D90.
+  std::vector<Quantile> volume_quantiles;
 
   std::optional<DrawnComparison> drawn;  ///< only if it is known how the radii were drawn
 };

@@ -38,7 +38,9 @@ struct StructureFactor {
 struct StructureOptions {
   double bin = 0.2;   ///< inverse mean diameters
   double reach = 30;  ///< inverse mean diameters
-  double work = 1e8;  ///< approximate number of exp(i k·c) computed; at least eight wave vectors a bin
+  /// Approximate number of exp(i k·c) computed, up to 400 wave vectors a bin; however many spheres there are,
+  /// 24 a bin, and 200 between 4 and 10 inverse mean diameters, where the first peak is.
+  double work = 1e8;
   std::size_t most_spheres = std::numeric_limits<std::size_t>::max();  ///< absent for more
 };
 
@@ -47,7 +49,7 @@ struct StructureOptions {
 /// If a bin has too many wave vectors, some are chosen, spread evenly over the directions. Over random
 /// directions S scatters by as much as its value, so the error is the scatter in the bin (or S, for fewer
 /// than eight vectors) over the root of their number. The result is the same for any number of threads. Cost:
-/// min(options.work, N vectors) at about 2 ns; memory some MB. Precondition: bin and reach positive.
+/// N vectors at about 2 ns, for a million spheres 20 s of processor time; memory some MB. Precondition: bin and reach positive.
 std::optional<StructureFactor> structure_factor(const Spheres<dynamic>&, const Domain&,
                                                 const StructureOptions& = {});
 

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -77,8 +78,8 @@ struct WallOptions {
   /// Approximate number of distances from a mesh computed; four times as many from other walls, which are
   /// faster.
   double work = 1e6;
-  /// Only container and spheres below this level count, also in the means; `regions` and sizes are those of
-  /// all spheres. The level is not a wall.
+  /// Only container and spheres below this level, or between two, count, also in the means; `regions` and
+  /// sizes are those of all spheres. The levels are no walls.
   std::optional<LowerPart> below = {};
 };
 
@@ -91,5 +92,10 @@ struct WallOptions {
 /// spheres: 0.4 s in a cylinder, 2 s in a mesh of 10,000 triangles. Precondition: options positive.
 std::optional<WallProfile> wall_profile(const Spheres<dynamic>&, const Domain&, const WallOptions& = {},
                                         const std::shared_ptr<const Container>& made = {});
+
+/// Of layers of equal thickness from a wall on: the least porosity within `diameter`, by a parabola through
+/// three layers. Absent where it is in the first layer or still falls behind it.
+std::optional<WallProfile::Minimum> first_minimum(std::span<const double> porosities, double thickness,
+                                                  double diameter);
 
 }  // namespace bernal

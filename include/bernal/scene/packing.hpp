@@ -29,6 +29,11 @@ std::string_view name_of(Outcome);
 /// Whether the stages came to their own end with all spheres that were asked for.
 inline bool is_packed(Outcome outcome) { return outcome == Outcome::converged || outcome == Outcome::loose; }
 
+/// Whether a run ended without what the scene asks for, so that nobody should take its packing for that.
+inline bool falls_short(Outcome outcome) {
+  return outcome != Outcome::converged && outcome != Outcome::imported;
+}
+
 /// One line of `bernal explain`: something that would run, and what it costs.
 struct PlanItem {
   std::string name;  ///< "walls", "neighbour lists", "compress", …

@@ -17,6 +17,7 @@
 #include "bernal/domain/mesh_file.hpp"
 #include "bernal/scene/bed_target.hpp"
 #include "bernal/scene/engine.hpp"
+#include "bernal/scene/shapes.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/solids/contact_treatment.hpp"
@@ -39,7 +40,8 @@ struct PeriodicBox {
 
 /// What is to be filled: `scene.container = Cylinder{.radius = 2, .height = 5}`. A box of two or three
 /// dimensions with walls all around is a Box; one that repeats itself is a PeriodicBox.
-struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon> {
+struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon, Cone, Tube,
+                                      Lathed, Extruded> {
   using variant::variant;
   Locations locations;
 };
@@ -155,6 +157,8 @@ struct Scene {
   SceneContainer container;  ///< the unit cube, if nothing else is said
   SceneSizes sizes;          ///< left at a Constant of 0 where those of the start are all there are
   bool sizes_are_diameters = false;
+  double scale = 1;      ///< the spheres are so many times as large as `sizes` says
+  bool largest = false;  ///< as many times as `Target::count` of them fit: `run` finds out, see `run_largest`
   /// Without it quantiles where a stage keeps the sizes in a container, and wherever few spheres carry much
   /// of the volume; else random.
   std::optional<Draw> draw = {};

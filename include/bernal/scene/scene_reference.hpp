@@ -2,6 +2,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bernal {
@@ -49,5 +50,17 @@ struct ReferenceGroup {
 /// Schemas, the classes of other languages and the reference on paper are made from. Its keys at the top, in
 /// [spheres] and in [accuracy] are the tables "scene", "spheres" and "accuracy" of the first group.
 std::vector<ReferenceGroup> scene_reference();
+
+/// Whether `reference` knows the name.
+bool is_in_reference(std::string_view name);
+
+/// The keys of scenes whose names or help speak of what the words ask for, such as "roundness of the top" or
+/// "kg", the best first, with the places where they stand; empty where there is none.
+std::string keys_about(std::string_view words);
+
+/// How well a name, and a text about it, answer to words: each word that means something has to stand in one
+/// of them as the beginning of a word, or another word for the same has to; else 0. More where it stands in
+/// the name.
+double relevance(std::string_view words, std::string_view name, std::string_view about);
 
 }  // namespace bernal

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "bernal/core/error.hpp"
+#include "bernal/sizes/percentiles.hpp"
 #include "bernal/sizes/size_distribution.hpp"
 
 namespace bernal {
@@ -31,9 +33,12 @@ struct Constant {
   double value = 0;
 };
 
+/// Materials may differ from class to class: shares by mass are then divided by their densities, in kg/m³.
 struct Classes {
   std::vector<double> values = {}, shares = {};
   Basis basis = Basis::number;
+  std::vector<double> material_densities = {};  ///< one a class, or none where it does not matter
+  std::vector<std::string> names = {};          ///< one a class, or none
 };
 
 struct Uniform {
@@ -47,11 +52,11 @@ struct Normal {
   std::optional<double> min = {}, max = {};
 };
 
-/// By `median` and `sigma`, or by the means d43 and d32.
+/// By `median` and `sigma`, by `mean` and standard deviation `sd` of the size, or by the means d43 and d32.
 struct Lognormal {
   std::optional<double> median = {}, sigma = {};
   Basis basis = Basis::number;
-  std::optional<double> d43 = {}, d32 = {}, min = {}, max = {};
+  std::optional<double> d43 = {}, d32 = {}, min = {}, max = {}, mean = {}, sd = {};
 };
 
 /// A density through points.
@@ -60,8 +65,37 @@ struct Tabulated {
   Basis basis = Basis::number;
 };
 
+/// What passes each sieve, or what each retains. A size of 0 is the pan, and so is one more retained amount
+/// than there are sizes, which then fall; spheres in the pan are at least as large as `pan`.
 struct Sieve {
-  std::vector<double> sizes = {}, passing = {};
+  std::vector<double> sizes = {}, passing = {}, retained = {};
+  std::optional<double> pan = {};
+};
+
+/// What is in each bin, by number or by mass.
+struct Histogram {
+  std::vector<double> edges = {}, counts = {}, masses = {};
+};
+
+/// Two or more of the usual percentiles: D10 is the diameter that 10 % of the basis lie below.
+struct Percentiles {
+  std::optional<double> d3 = {}, d5 = {}, d10 = {}, d16 = {}, d20 = {}, d25 = {}, d30 = {}, d50 = {},
+                        d60 = {}, d70 = {}, d75 = {}, d80 = {}, d84 = {}, d90 = {}, d95 = {}, d97 = {},
+                        d99 = {};
+  PercentileLaw law = PercentileLaw::lognormal;
+  Basis basis = Basis::volume;
+  std::optional<double> min = {}, max = {};
+};
+
+/// Sizes one by one: `each` is packed exactly once, in an order that follows from the seed, so that there are
+/// as many spheres as values; or they are drawn from, each as often as it is there.
+struct ListedSizes {
+  enum class Draw { each, resample };
+
+  std::vector<double> values = {};
+  Draw draw = Draw::each;
+  /// Where it is set a writer names this file in place of the values; what reads a scene leaves it empty.
+  std::filesystem::path beside = {};
 };
 
 struct RosinRammler {
@@ -83,9 +117,15 @@ struct Mixture {
 
 /// Any of them: `scene.sizes = Lognormal{.median = 1, .sigma = 0.3}`.
 struct SceneSizes : std::variant<Constant, Classes, Uniform, Normal, Lognormal, Tabulated, Sieve,
-                                 RosinRammler, Fuller, Mixture> {
+                                 RosinRammler, Fuller, Mixture, Percentiles, Histogram, ListedSizes> {
   using variant::variant;
   Locations locations;
 };
+
+/// The list of which every sphere is packed exactly once; null where the sizes are drawn.
+inline const ListedSizes* each_once(const SceneSizes& sizes) {
+  const auto* list = std::get_if<ListedSizes>(&sizes);
+  return list && list->draw == ListedSizes::Draw::each ? list : nullptr;
+}
 
 }  // namespace bernal

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 
 namespace bernal {
 
@@ -7,13 +8,25 @@ namespace bernal {
 enum class Layout {
   random,   ///< each at a uniformly random position
   lattice,  ///< on a face-centred (for discs, hexagonal) lattice, as wide as possible
+  // Crystals, along the coordinate axes: each sphere at the next site from the floor up.
+  fcc,  ///< face-centred cubic
+  bcc,  ///< body-centred cubic
+  hcp,  ///< hexagonal close-packed, its layers across the last axis; of discs the hexagonal lattice
+  sc,   ///< simple cubic; of discs the square lattice
 };
 
 /// The initial packing: spheres come one by one, each to a position where it overlaps nothing.
 struct Insert {
   Layout layout = Layout::random;
-  int attempts = 100;              ///< random positions tried for a sphere before it has to wait
-  double packing_fraction = 0.30;  ///< stop here; random insertion gets slow beyond
+  /// Of a crystal: the distance of a site from its nearest ones, in the scene's unit; if absent, the largest
+  /// spheres touch.
+  std::optional<double> spacing = {};
+  int attempts = 100;  ///< random positions tried for a sphere before it has to wait
+  /// Stop here; random insertion gets slow beyond the 0.3 that it is if absent. Crystals then take all sites.
+  std::optional<double> packing_fraction = {};
+
+  bool is_crystal() const { return layout != Layout::random && layout != Layout::lattice; }
+  double until() const { return packing_fraction.value_or(is_crystal() ? 1 : 0.30); }
 };
 
 }  // namespace bernal

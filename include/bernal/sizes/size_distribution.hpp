@@ -45,9 +45,10 @@ class SizeDistribution {
   double min_, max_;
 };
 
-/// What the shares or the density of a distribution count: spheres, or their volume, r³ in any dimension, as
-/// a balance does for one density. A density q(r) by volume is q(r) / r³ by number.
-enum class Basis { number, volume };
+/// What the shares or the density of a distribution count: spheres, or their volume, r³ in any dimension, or
+/// their mass, which for one material is the same; shares of several are divided by their densities first. A
+/// density q(r) by volume is q(r) / r³ by number.
+enum class Basis { number, volume, mass };
 
 /// All of these throw Error{bad_argument} for invalid values (not finite, not positive, empty, min > max).
 std::unique_ptr<SizeDistribution> make_constant(double radius);
@@ -61,6 +62,10 @@ std::unique_ptr<SizeDistribution> make_lognormal(double median, double sigma, Ba
 /// The lognormal distribution with volume-weighted mean <r⁴>/<r³> = `r43` and surface-weighted mean <r³>/<r²>
 /// = `r32` before truncation: sigma² = ln(r43 / r32), median by volume √(r43·r32).
 std::unique_ptr<SizeDistribution> make_lognormal_of_means(double r43, double r32, double min, double max);
+/// The lognormal distribution whose radius has this mean and standard deviation, both of the given basis and
+/// before truncation: sigma² = ln(1 + (deviation / mean)²), median = mean / √(1 + (deviation / mean)²).
+std::unique_ptr<SizeDistribution> make_lognormal_of_mean(double mean, double deviation, Basis, double min,
+                                                         double max);
 /// r is normal with this mean and standard deviation, both of the given basis and before truncation to [min,
 /// max]. 0 and infinity stand for six standard deviations from the mean, beyond which the share is
 /// negligible; the lower limit must be positive.
@@ -69,14 +74,20 @@ std::unique_ptr<SizeDistribution> make_normal(double mean, double deviation, Bas
 /// where the spline is negative. `radii` ascend, densities are not negative, at least two points. Source:
 /// Zhao, Li & Liu (2007), section 1, who draw by rejection; here one number gives one radius.
 std::unique_ptr<SizeDistribution> make_table(std::vector<double> radii, std::vector<double> densities, Basis);
-/// A sieve analysis: `passing`, in any scale, is the volume (or mass) of the spheres that pass each opening.
-/// It begins at 0 and does not fall; `radii` are half the openings, ascending. Between two sieves the volume
-/// is uniform in ln r, so that curves are straight over a logarithmic axis.
-std::unique_ptr<SizeDistribution> make_sieve(std::vector<double> radii, std::vector<double> passing);
-/// Rosin and Rammler (Weibull): the share 1 - exp(-(r / r63)^n) of the volume lies below r; truncated to
+/// A sieve analysis: `passing`, in any scale, is what of the basis passes each opening: the volume (or mass),
+/// or the number of the spheres. It begins at 0 and does not fall; `radii` are half the openings, ascending.
+/// Between two sieves the basis is uniform in ln r, so that curves are straight over a logarithmic axis.
+std::unique_ptr<SizeDistribution> make_sieve(std::vector<double> radii, std::vector<double> passing,
+                                             Basis = Basis::volume);
+/// `amounts`, in any scale, is what of the basis is in each bin, one fewer than the ascending `edges`, which
+/// are positive where a bin holds anything. Within a bin the density of the basis is constant.
+std::unique_ptr<SizeDistribution> make_histogram(std::vector<double> edges, std::vector<double> amounts,
+                                                 Basis);
+/// Rosin and Rammler (Weibull): the share 1 - exp(-(r / r63)^n) of the basis lies below r; truncated to
 /// [min, max] and normalised. `min` is positive, because for n <= 3 the number of fines has no bound without
-/// it; an infinite `max` stands for the radius with 0.1 % of the volume above.
-std::unique_ptr<SizeDistribution> make_rosin_rammler(double r63, double n, double min, double max);
+/// it; an infinite `max` stands for the radius with 0.1 % of the basis above.
+std::unique_ptr<SizeDistribution> make_rosin_rammler(double r63, double n, double min, double max,
+                                                     Basis = Basis::volume);
 /// Fuller, with the lower limit of Funk and Dinger: the share (r^exponent - min^exponent) / (max^exponent -
 /// min^exponent) of the volume lies below r.
 std::unique_ptr<SizeDistribution> make_fuller(double max, double exponent, double min);

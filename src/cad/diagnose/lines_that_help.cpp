@@ -10,6 +10,7 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/monitor.hpp"
+#include "bernal/core/text.hpp"
 #include "cad/diagnose/defects.hpp"
 #include "cad/diagnose/self_intersections.hpp"
 #include "cad/repair/caged_repair.hpp"
@@ -136,6 +137,34 @@ Openings openings_of(const Mesh& mesh, const Bounds<3>& part) {
   return found.planes.size() > most_planes ? Openings{} : found;
 }
 
+/// Each solid of an assembly by itself, by its name, or its number where others have that name or it has
+/// none.
+std::vector<Line> lines_for_solids(const MeshFile& options, const MeshReport& report) {
+  constexpr std::size_t most = 6;
+  std::vector<Line> lines;
+  const std::vector<std::string>& names = report.solids;
+  if (names.size() < 2 || !options.solids.empty()) return lines;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+    const bool is_plain = !names[i].empty() && names[i] == plain_text(names[i]) &&
+                          names[i].find_first_of("\"\\") == std::string::npos;
+    const std::string called =
+        is_plain && std::ranges::count(names, names[i]) == 1 ? names[i] : fmt::format("{}", i + 1);
+    lines.push_back(
+        {fmt::format("solids = [\"{}\"]", called), [called](MeshFile& m) { m.solids = {called}; }});
+  }
+  return lines;
+}
+
+/// What may be meant instead of the whole of a file that can be a container: the hollow of a vessel, one
+/// solid of an assembly.
+std::vector<Line> other_containers(const MeshFile& options, const MeshReport& report) {
+  std::vector<Line> lines;
+  if (report.hollow_volume > 0)
+    lines.push_back({"interior = \"cavity\"", [](MeshFile& m) { m.interior = Interior::cavity; }});
+  for (Line& line : lines_for_solids(options, report)) lines.push_back(std::move(line));
+  return lines;
+}
+
 std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_is) {
   const Mesh& mesh = as_it_is.mesh;
   const MeshReport& report = as_it_is.report;
@@ -174,8 +203,8 @@ std::vector<Line> candidates(const MeshFile& options, const ImportedMesh& as_it_
   for (const auto* some : {caps_first ? &caps : &repairs, caps_first ? &repairs : &caps})
     lines.insert(lines.end(), some->begin(), some->end());
   // Touching parts: one of them, if the file separates them.
-  if (report.solids.size() > 1 && options.solids.empty() && report.open_edges == 0)
-    lines.push_back({"solids = [\"1\"]", [](MeshFile& m) { m.solids = {"1"}; }});
+  if (report.open_edges == 0)
+    for (Line& line : lines_for_solids(options, report)) lines.push_back(std::move(line));
   for (const Line& cap : caps)
     for (const Line& repair : repairs)
       lines.push_back({fmt::format("{}\n{}", cap.text, repair.text), [cap, repair](MeshFile& m) {
@@ -240,7 +269,7 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
       return false;
     }
   };
-  const auto try_all = [&](const std::vector<Line>& some) {
+  const auto try_all = [&](const std::vector<Line>& some, std::size_t most) {
     for (const Line& line : some) {
       const auto is_part = [&](const std::string& shorter) {
         return line.text.find(shorter) != std::string::npos;
@@ -248,11 +277,16 @@ std::vector<std::string> lines_that_help(const MeshFile& options, const ImportFo
       if (std::ranges::any_of(lines, is_part)) continue;  // a smaller change suffices
       if (watch.seconds() > seconds_for_all) break;
       if (helps(line)) lines.push_back(line.text);
-      if (lines.size() == enough) break;
+      if (lines.size() == most) break;
     }
   };
-  try_all(candidates(options, as_it_is));
-  if (lines.empty()) try_all(lines_for_widest_hole(options, as_it_is));
+  if (as_it_is.report.usable()) {
+    const std::vector<Line> others = other_containers(options, as_it_is.report);
+    try_all(others, others.size());
+    return lines;
+  }
+  try_all(candidates(options, as_it_is), enough);
+  if (lines.empty()) try_all(lines_for_widest_hole(options, as_it_is), enough);
   if (lines.empty() && effort == Effort::thorough && options.repair.empty())
     if (std::string line =
             wrap_that_helps(as_it_is.mesh, purpose.smallest_radius, as_it_is.report.bounds.diagonal());

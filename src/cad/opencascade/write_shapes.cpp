@@ -11,6 +11,7 @@
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
@@ -44,10 +45,15 @@ struct Failed {
 /// The only solid of a result; any other number is an error.
 TopoDS_Shape only_solid(const TopoDS_Shape& shape, const char* what) {
   TopExp_Explorer solid(shape, TopAbs_SOLID);
-  if (!solid.More()) throw Failed{fmt::format("OpenCASCADE makes nothing of {}", what)};
+  if (!solid.More())
+    throw Failed{fmt::format(
+        "OpenCASCADE makes nothing of {}; export triangles, such as STL, or treat contacts otherwise", what)};
   const TopoDS_Shape found = solid.Current();
   solid.Next();
-  if (solid.More()) throw Failed{fmt::format("OpenCASCADE makes several solids of {}", what)};
+  if (solid.More())
+    throw Failed{fmt::format(
+        "OpenCASCADE makes several solids of {}; export triangles, such as STL, or treat contacts otherwise",
+        what)};
   return found;
 }
 
@@ -139,16 +145,30 @@ struct ContainerShape {
       }
       BRepBuilderAPI_MakeFace face(wires.front(), true);
       for (std::size_t k = 1; k < wires.size(); ++k) face.Add(wires[k]);
-      if (!face.IsDone()) throw Failed{"OpenCASCADE makes no face of a flat part of the container"};
+      if (!face.IsDone())
+        throw Failed{
+            "OpenCASCADE makes no face of a flat part of the container; export triangles, such as STL"};
       sewing.Add(face.Face());
     }
     sewing.Perform();
     TopExp_Explorer shell(sewing.SewedShape(), TopAbs_SHELL);
     if (!shell.More() || sewing.NbFreeEdges() > 0)
-      throw Failed{"OpenCASCADE makes no closed surface of the container's triangles"};
+      throw Failed{
+          "OpenCASCADE makes no closed surface of the container's triangles; export triangles, such as STL"};
     BRepBuilderAPI_MakeSolid solid;
     for (; shell.More(); shell.Next()) solid.Add(TopoDS::Shell(shell.Current()));
     return solid.Solid();
+  }
+  TopoDS_Shape operator()(const Revolved& revolved) const {
+    const gp_Ax2 frame(point_at(revolved.base), direction_of(revolved.axis));
+    BRepBuilderAPI_MakePolygon profile;
+    for (const Vector<2>& p : revolved.profile)
+      profile.Add(gp_Pnt(frame.Location().XYZ() + p[0] * frame.XDirection().XYZ() +
+                         p[1] * frame.Direction().XYZ()));
+    profile.Close();
+    BRepBuilderAPI_MakeFace face(profile.Wire(), true);
+    if (!face.IsDone()) throw Failed{"OpenCASCADE makes no face of the container's profile"};
+    return BRepPrimAPI_MakeRevol(face.Shape(), frame.Axis()).Shape();
   }
   TopoDS_Shape operator()(const Polygon&) const { return {}; }
 };

@@ -8,6 +8,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "cad/read/files_of_part.hpp"
 #include "cad/read/known_formats.hpp"
 #include "files/file_kind.hpp"
 
@@ -94,6 +95,20 @@ ReadAttempt sound(ReadAttempt read, const std::filesystem::path& file) {
   return read;
 }
 
+/// Says which files the part consists of besides the given one.
+void note_other_files(const std::filesystem::path& file, ReadAttempt& read) {
+  constexpr std::size_t most = 6;
+  std::vector<std::string> names;
+  for (const std::filesystem::path& other : files_of_part(file))
+    if (other != file) names.push_back(other.lexically_relative(file.parent_path()).string());
+  if (names.empty()) return;
+  const std::size_t more = names.size() - std::min(most, names.size());
+  names.resize(names.size() - more);
+  read.facts.notes.push_back(fmt::format("the file refers to others, which were read with it: {}{}",
+                                         fmt::join(names, ", "),
+                                         more > 0 ? fmt::format(" and {} more", more) : ""));
+}
+
 }  // namespace
 
 ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres) {
@@ -104,7 +119,9 @@ ReadAttempt read_soup(const std::filesystem::path& file, double deflection, doub
   std::error_code error;
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
   if (const std::string other = why_no_mesh(file); !other.empty()) refuse(file, other);
-  return sound(read_by_extension(file, deflection, metres > 0 ? metres : 1), file);
+  ReadAttempt read = sound(read_by_extension(file, deflection, metres > 0 ? metres : 1), file);
+  note_other_files(file, read);
+  return read;
 }
 
 ReadAttempt read_surface(const PolygonSurface& surface, const std::filesystem::path& name) {

@@ -172,7 +172,8 @@ constexpr std::string_view close_first = "close its openings by \"cap\" or repai
 
 RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor) {
   if (!(alpha >= 0) || !(offset >= 0) || !std::isfinite(alpha) || !std::isfinite(offset))
-    throw Error(ErrorCode::bad_argument, "alpha and offset of a wrap are lengths, or 0 for the default");
+    throw Error(ErrorCode::bad_argument,
+                "alpha and offset of a wrap are lengths above 0; give 0 for the default");
   if (mesh.triangles.empty()) return {std::move(mesh), "not wrapped: it has no faces"};
   const Bounds<3> bounds = bounds_of_faces(mesh);
   if (alpha == 0) alpha = alpha_over_diagonal * bounds.diagonal();
@@ -213,7 +214,8 @@ RepairedMesh wrap(Mesh mesh, double alpha, double offset, const Monitor& monitor
     }
     Mesh outer = wrapped(mesh, alpha, offset, {}, monitor);
     if (outer.triangles.empty())
-      return {std::move(mesh), fmt::format("not wrapped ({}): the result is empty", how)};
+      return {std::move(mesh),
+              fmt::format("not wrapped ({}): the result is empty; close its gaps in CAD", how)};
     if (is_only_a_skin(outer, offset))
       return {std::move(mesh),
               fmt::format("not wrapped ({}): {}, and from outside only the skin of a sheet results; {}", how,

@@ -17,7 +17,7 @@ from __future__ import annotations
 from . import _core, design
 from ._classes import CLASSES, Container, Engine, Output, Sizes, Stage
 from ._errors import EngineError, Error, InputError, KeywordError, WriteError
-from ._jobs import Stopped
+from ._jobs import NotReached, Stopped
 from ._packing import Packing, Picture, View
 from ._records import Certificate, Inspection, Measurements, Plan, Prediction, Record, Written
 from ._scene import Scene
@@ -31,7 +31,7 @@ __all__ = [
     "Scene", "pack", "explain", "verify", "measure", "export", "read", "import_", "from_arrays", "inspect", "predict",
     "design", "Packing", "Picture", "View", "Container", "Sizes", "Stage", "Engine", "Output", *CLASSES,
     "Record", "Plan", "Certificate", "Measurements", "Inspection", "Prediction", "Written",
-    "Error", "InputError", "KeywordError", "WriteError", "EngineError", "Stopped",
+    "Error", "InputError", "KeywordError", "WriteError", "EngineError", "NotReached", "Stopped",
 ]  # fmt: skip
 
 globals().update(CLASSES)

@@ -11,7 +11,18 @@ from . import _core
 from ._progress import Progress, display_of
 
 
-class Stopped(UserWarning):
+class NotReached(UserWarning):
+    """A run ended without what its scene asks for: it is full, loose, or came to a limit. The packing is valid.
+
+    `warnings.simplefilter("error", bernal.NotReached)` turns it into an exception.
+    """
+
+
+NOT_REACHED = ("full", "loose", "hit_limit", "cancelled")
+"""The outcomes of such runs."""
+
+
+class Stopped(NotReached):
     """Ctrl-C stopped a run, and `pack` returned the spheres that it had placed.
 
     `warnings.simplefilter("error", bernal.Stopped)` turns it into an exception, which ends a loop over runs.

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from . import _core, _records, _surfaces, _toml
 from ._errors import InputError
-from ._jobs import finish
+from ._jobs import NOT_REACHED, finish
 from ._progress import Progress
 from ._records import Record, Written
 from ._scene import Scene
@@ -66,6 +66,13 @@ class View:
             f'<iframe srcdoc="{html.escape(self.page)}" style="width:100%;height:{self.height}px;border:0" '
             'title="A view of a packing"></iframe>'
         )
+
+
+def _gap_ratio(gap: float) -> float:
+    ratio = _toml.number(gap, "gap")
+    if not 0 <= ratio <= 1:
+        raise InputError("bad_argument", f"gap is a ratio from 0 to 1, not {ratio}")
+    return ratio
 
 
 class Packing:
@@ -226,13 +233,20 @@ class Packing:
         return str(self._core.hash())
 
     def coordination(self, gaps: Iterable[float] = (0.002,)) -> Array:
-        """The mean number of contacts of a sphere, including those with walls, for each of several gaps: spheres touch if
+        """The mean number of contacts of a sphere with others, for each of several gaps: spheres touch if
         the gap over the sum of their radii is below it. Gaps are from 0 to 1. Cost: that of the largest gap."""
-        asked = [_toml.number(gap, "gap") for gap in gaps]
-        for gap in asked:
-            if not 0 <= gap <= 1:
-                raise InputError("bad_argument", f"gap is a ratio from 0 to 1, not {gap}")
-        return np.array(self._core.coordination(asked))
+        return np.array(self._core.coordination([_gap_ratio(gap) for gap in gaps]))
+
+    def contacts(self, gap: float = 0.002) -> Record:
+        """All contacts, one by one, sorted by i, then by j: arrays i and j of shape (M,), the indices of the spheres,
+        with j = -1 at a wall; gap, the distance of the surfaces in the scene's unit, negative where they overlap;
+        normal of shape (M, D), unit vectors from i to j or to the wall; place of shape (M, D), the middle of the gap.
+        A pair stands there once, with i < j. Where spheres touch across a period, normal and place are those of the
+        image that sphere i touches.
+
+        gap : spheres touch if the gap over the sum of their radii is below it, at a wall over the radius.
+        """
+        return Record(self._core.contacts(_gap_ratio(gap)))
 
     @property
     def history(self) -> list[Record]:
@@ -302,18 +316,27 @@ class Packing:
     def __deepcopy__(self, memo: dict[int, Any]) -> Packing:
         return self
 
+    @property
+    def _noun(self) -> str:
+        noun = "disc" if self.dimension == 2 else "sphere"
+        return noun if len(self) == 1 else noun + "s"
+
     def __repr__(self) -> str:
-        n = len(self)
+        end = f"{self.outcome}: {self.reason}" if self.outcome in NOT_REACHED else self.outcome
         return (
-            f"<Packing of {n:,} {'sphere' if n == 1 else 'spheres'} in a {self._core.domain()}, "
-            f"packing fraction {self.packing_fraction:.4f}, {self.outcome}>"
+            f"<Packing of {len(self):,} {self._noun} in a {self._core.domain()}, "
+            f"packing fraction {self.packing_fraction:.4f}, {end}>"
         )
+
+    def _colour(self, row: str) -> str:
+        """Amber, which can be read on white and on black, for a run that ended without what was asked."""
+        return ' style="color:#b87400;font-weight:600"' if row == "outcome" and self.outcome in NOT_REACHED else ""
 
     def _repr_html_(self) -> str:
         expected = f" ({self.expected_packing_fraction:.3f} was expected)" if self.expected_packing_fraction > 0 else ""
         size = " × ".join(f"{edge:.4g}" for edge in self.bounds[1] - self.bounds[0])
         rows = {
-            "spheres": f"{len(self):,} in a {self._core.domain()} of {size} {self.unit}",
+            "discs" if self.dimension == 2 else "spheres": f"{len(self):,} in a {self._core.domain()} of {size} {self.unit}",
             "packing fraction": f"{self.packing_fraction:.4f}{expected}",
             "outcome": f"{self.outcome}: {self.reason}" if self.reason else self.outcome,
         }
@@ -322,7 +345,8 @@ class Packing:
             range_of = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
             rows["diameters"] = f"{range_of} {self.unit}"
         cells = "".join(
-            f'<div style="opacity:.65">{name}</div><div>{html.escape(text)}</div>' for name, text in rows.items()
+            f'<div style="opacity:.65">{name}</div><div{self._colour(name)}>{html.escape(text)}</div>'
+            for name, text in rows.items()
         )
         picture = self.picture._repr_html_() if self.dimension in (2, 3) else ""
         return (

@@ -174,8 +174,34 @@ Scene.__init__.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
 )
 
 
-def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
-    return scene if isinstance(scene, Scene) else Scene.read(scene)
+def as_scene(scene: Scene | str | os.PathLike[str], **keys: Any) -> Scene:
+    """A scene, that of a TOML file, or with `keys` that of a mesh."""
+    if isinstance(scene, Scene) or not _core.is_mesh_file(_surfaces.path(scene, "the file of a scene")):
+        if keys:
+            raise _errors.KeywordError(
+                "bad_argument", f"a scene says itself what is packed; leave out {', '.join(keys)}, or see Scene.replace"
+            )
+        return scene if isinstance(scene, Scene) else Scene.read(scene)
+    return _of_mesh(os.path.abspath(os.fspath(scene)), keys)
+
+
+def _of_mesh(file: str, keys: dict[str, Any]) -> Scene:
+    """The scene in which a mesh is packed. The keys are those of `Scene` and of `Mesh`; "diameter" and "radius" are
+    what scene files call sizes, "file_unit" is the unit of the mesh where that is not the one of the scene."""
+    if not {"diameters", "diameter", "radii", "radius", "start"} & set(keys):
+        raise _errors.InputError(
+            "bad_argument",
+            f"{file} is a mesh, not a scene; say what is packed into it, such as diameters=2, unit='mm' (a file that "
+            "says its unit, as STEP does, needs none)",
+        )
+    of_scene = {{"diameter": "diameters", "radius": "radii"}.get(name, name): value for name, value in keys.items()}
+    mesh = _classes.CLASSES["Mesh"]
+    of_mesh = {name: of_scene.pop(name) for name in [*of_scene]
+               if name not in ("file", "unit") and any(key["name"] == name for key in mesh._table["keys"])}  # fmt: skip
+    of_mesh["unit"] = of_scene.pop("file_unit", None)
+    if of_scene.get("unit") is None:
+        of_scene["unit"] = of_mesh["unit"] or _core.unit_of_mesh_file(file)
+    return Scene(mesh(file, **of_mesh), **of_scene)
 
 
 def _again(parts: dict[str, Any]) -> Scene:

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _classes, _core, _errors, _records, _surfaces, _toml
 from ._classes import Container, Output, Sizes
-from ._jobs import Stopped, finish
+from ._jobs import NOT_REACHED, NotReached, Stopped, finish
 from ._packing import Packing
 from ._progress import Progress
 from ._records import Certificate, Inspection, Measurements, Plan, Prediction, Written
@@ -20,37 +20,49 @@ from ._scene import Scene, as_scene
 PathLike = Union[str, "os.PathLike[str]"]
 
 
-def explain(scene: Scene | PathLike, *, progress: Progress = None) -> Plan:
+def explain(scene: Scene | PathLike, *, progress: Progress = None, **keys: Any) -> Plan:
     """Says what a scene would run, what it would cost, and how many spheres to expect. Runs nothing.
+
+    keys : of a mesh in place of a scene, as for `pack`.
 
     `str` gives what `bernal explain` prints. Keys: unit, container, spheres, accuracy, expected (count,
     packing_fraction, seconds on one core, memory_bytes), caution, outputs, items, absent, stages.
     Raises InputError where parts do not fit each other. Cost: reading the mesh.
     """
-    answer, words = finish(_core.explain(as_scene(scene)._core), progress)
+    answer, words = finish(_core.explain(as_scene(scene, **keys)._core), progress)
     plan: Plan = _records.record(Plan, answer)
     plan.__dict__["words"] = words
     return plan
 
 
-def pack(scene: Scene | PathLike, *, seed: int | None = None, threads: int = 0, progress: Progress = None) -> Packing:
-    """Runs a scene, or the scene of a file.
+def pack(
+    scene: Scene | PathLike, *, seed: int | None = None, threads: int = 0, progress: Progress = None, **keys: Any
+) -> Packing:
+    """Runs a scene, the scene of a file, or what the keys say of a mesh:
+
+        bernal.pack("part.step", diameters=2)
+        bernal.pack("part.stl", unit="mm", diameters=bernal.Lognormal(2, 0.3), count=5000, cap="z = 1.1")
 
     One seed gives one packing, bit for bit, for any number of threads. `seed` replaces the scene's; `threads` 0 is as
     many as the machine has.
 
     Ctrl-C ends the run at its next safe point. `pack` then warns with `Stopped` and returns the spheres that are in
     place, a valid packing whose outcome is "cancelled". A second Ctrl-C raises KeyboardInterrupt at once. Only the main
-    thread reacts to it. A run that does not reach what the scene asks for raises nothing, see `Packing.outcome`.
+    thread reacts to it. A run that ends without what the scene asks for warns with `NotReached` and raises nothing, see
+    `Packing.outcome`.
 
     progress : True, False, None (in terminals and notebooks) or a function of activity, fraction (None if unknown) and
         detail. If it raises an exception, the run ends; KeyboardInterrupt counts as Ctrl-C. Raises InputError.
+    keys : where `scene` is a mesh, those of `Scene` and of `Mesh`. `unit` is that of all lengths, and may be left out
+        where the file says its own, as STEP does; `file_unit` is that of the mesh alone.
     """
-    asked = as_scene(scene)
+    asked = as_scene(scene, **keys)
     job = _core.pack(asked._core, None if seed is None else _toml.whole(seed, "seed"), _threads(threads))
     packing = Packing._of(finish(job, progress, leaves_something=True), asked)
     if packing.outcome == "cancelled":
-        warnings.warn(f"stopped by Ctrl-C with {len(packing):,} spheres in place", Stopped, stacklevel=2)
+        warnings.warn(f"stopped by Ctrl-C with {len(packing):,} {packing._noun} in place", Stopped, stacklevel=2)
+    elif packing.outcome in NOT_REACHED:
+        warnings.warn(f"{packing.outcome}: {packing.reason}", NotReached, stacklevel=2)
     return packing
 
 
@@ -88,11 +100,11 @@ def measure(packing: Packing | PathLike, *, gap: float = 0.002, progress: Progre
     """Measures contacts, rattlers, g(r), chambers, porosity near walls, order, and sizes against those asked for, of a
     packing or of the files in a folder.
 
-    Keys are those of `bernal measure --json`: n, dimension, unit, phi, coordination, rattlers, backbone, by_gap, g_r
+    Keys are those of `bernal measure --json`: n, dimension, unit, phi, coordination, rattlers, backbone, fabric, by_gap, g_r
     (r, g and error of shape (bins,)), size_correlation, crystalline, chambers, bed (height, porosity and layers of
     a bed, and how many of its spheres do not rest), walls, sizes, hash. Lists of numbers
     are arrays. Lengths are in the scene's unit. What does not apply is None, such as g_r between walls.
-    Also `per_sphere`, arrays of shape (N,): local_packing_fraction (the sphere's volume over that of its cell in the
+    Also `per_sphere`, arrays of shape (N,): coordination (contacts with spheres), local_packing_fraction (the sphere's volume over that of its cell in the
     radical diagram), cell_volume, neighbours (faces of the cell), and in containers chamber (-1: in none).
 
     gap : spheres touch if the gap over the sum of their radii is below it.

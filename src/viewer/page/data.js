@@ -64,6 +64,6 @@ export function decode(json) {
   return {
     flat, count: json.count, shown: n, unit: json.unit, origin: json.origin, scale: json.scale, eye: json.eye,
     palette: json.palette, domain, spheres, columns, indices, depths: reordered(depths, order, 1),
-    shellDepth: json.spheres.depth || 0, meanRadius: n > 0 ? sum / n : 0,
+    noun: json.dimension === 2 ? "disc" : "sphere", shellDepth: json.spheres.depth || 0, meanRadius: n > 0 ? sum / n : 0,
   };
 }

@@ -90,9 +90,9 @@ export class Panel {
   writeNote() {
     const { data } = this;
     const grouped = (n) => n.toLocaleString("en-US");
-    if (data.count === 0) this.note.textContent = "no spheres";
+    if (data.count === 0) this.note.textContent = `no ${data.noun}s`;
     else if (data.shown < data.count)
-      this.note.textContent = `shell of ${grouped(data.count)} spheres: the outermost ${grouped(data.shown)}, ` +
+      this.note.textContent = `shell of ${grouped(data.count)} ${data.noun}s: the outermost ${grouped(data.shown)}, ` +
         `down to ${numberText(data.shellDepth, 3)} ${data.unit}; deeper ones are left out`;
   }
 
@@ -166,7 +166,7 @@ export class Panel {
         : this.lengthText(value, column.kind, 5)]);
     }
     this.card.replaceChildren(
-      element("b", { textContent: `sphere ${data.indices[row]}` + (image ? ", an image" : "") }),
+      element("b", { textContent: `${data.noun} ${data.indices[row]}` + (image ? ", an image" : "") }),
       button("\u00d7", "Close (Esc)", close),
       element("table", {}, ...rows.map(([name, value]) =>
         element("tr", {}, element("th", { textContent: name }), element("td", { textContent: value })))));

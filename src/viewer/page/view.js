@@ -39,7 +39,7 @@ export class View {
 
     this.stage = element("div", { className: "bernal-stage" });
     this.canvas = element("canvas", { tabIndex: 0, aria: {
-      label: `${data.count} spheres in a ${data.domain.name}. Arrow keys turn, question mark lists all keys.` } });
+      label: `${data.count} ${data.noun}s in a ${data.domain.name}. Arrow keys turn, question mark lists all keys.` } });
     this.canvas.setAttribute("role", "application");
     this.stage.append(this.canvas);
     frame.append(this.stage);

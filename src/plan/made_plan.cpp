@@ -1,0 +1,62 @@
+#include "plan/made_plan.hpp"
+
+#include <cmath>
+#include <typeinfo>
+
+#include "bernal/core/dimension.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/scene/read_scene.hpp"
+
+namespace bernal {
+namespace {
+
+/// Of spheres that are to be as large as fit: on the scale with which the search begins, on which they are
+/// easily placed.
+Plan plan_of_largest(const Scene& stated) {
+  constexpr double first_share = 0.3, least_share = 1e-3;  // of the domain's volume
+  constexpr double runs = 60;  // that the search takes, of few spheres and of many
+  Scene scene = stated;
+  complete(scene);
+  const int dimension = scene.dimension();
+  scene.scale = 1;
+  const double volume = static_cast<double>(*scene.target.count) * ball_volume(dimension, 1) *
+                        radii_of(scene)->moment(dimension);
+  const double room = volume_of(domain_of(scene));
+  for (double share = first_share;; share /= 2) {
+    scene.scale = std::pow(share * room / volume, 1.0 / dimension);
+    try {
+      Plan plan = made_plan(scene);
+      plan.expected_packing_fraction = plan.attainable_packing_fraction;
+      plan.items.push_back(
+          {.name = "search",
+           .what = "the same for larger and larger spheres, and for sizes in between, from several "
+                   "beginnings each, until the largest are known to 1e-4",
+           .cost = "some 60 runs",
+           .seconds = (runs - 1) * plan.expected_seconds});
+      plan.expected_seconds *= runs;
+      return plan;
+    } catch (
+        const Error&) {  // the largest of many sizes do not fit, or what only looks so is another mistake
+      if (share < least_share) throw;
+    }
+  }
+}
+
+}  // namespace
+
+Plan build(const Scene& scene) {
+  const int dimension = scene.dimension();
+  try {
+    Plan plan = scene.largest ? plan_of_largest(scene) : made_plan(scene);
+    plan.caution = in_dimension(dimension, plan.caution);
+    for (PlanItem& item : plan.items) item.what = in_dimension(dimension, item.what);
+    for (std::string& hint : plan.hints) hint = in_dimension(dimension, hint);
+    return plan;
+  } catch (const Error& error) {
+    const std::string in_words = in_dimension(dimension, error.message());
+    if (typeid(error) != typeid(Error) || in_words == error.message()) throw;
+    throw Error(error.code(), in_words, error.location());
+  }
+}
+
+}  // namespace bernal

@@ -1,0 +1,144 @@
+#include "run/run_largest.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bernal/core/text.hpp"
+
+namespace bernal {
+namespace {
+
+/// How much larger the spheres of the next run are, until one fails; and to what the largest are known.
+constexpr double step = 1.05, known_to = 5e-5;
+/// Steps down to sizes that can be placed, at most.
+constexpr int most_steps_down = 60;
+/// Seeds from which a size is tried before it counts as too large: few spheres take no time, and how they
+/// begin decides where they end.
+int tries_for(std::int64_t count) { return static_cast<int>(std::clamp<std::int64_t>(1600 / count, 2, 32)); }
+
+class Search {
+ public:
+  Search(const Plan& plan, const RunOptions& options)
+      : plan_(plan), options_(options), tries_(tries_for(*plan.scene.target.count)) {}
+
+  Packing found() {
+    double scale = plan_.scene.scale;
+    std::optional<double> fitting, too_large;
+    for (int down = 0; !stopped_ && (!fitting || !too_large || *too_large > (1 + known_to) * *fitting);) {
+      tell(fitting, too_large, scale);
+      if (fits(scale)) {
+        fitting = scale;
+      } else {
+        too_large = scale;
+        if (!fitting && ++down > most_steps_down) break;
+      }
+      scale = !fitting ? *too_large / step : !too_large ? *fitting * step : std::sqrt(*fitting * *too_large);
+    }
+    if (!best_) return last_ ? std::move(*last_) : run(build(scene_at(scale)), sub_options(0));
+    Packing packing = std::move(*best_);
+    packing.outcome = stopped_ ? Outcome::cancelled : Outcome::converged;
+    packing.reason = in_words(packing, fitting.value_or(scale), too_large);
+    packing.effects.push_back({"search", runs_, watch_.seconds()});
+    packing.seconds = watch_.seconds();
+    return packing;
+  }
+
+ private:
+  /// The scene of spheres of a size: of one size, that size; else the scale.
+  Scene scene_at(double scale) const {
+    Scene scene = plan_.scene;
+    scene.largest = false;
+    scene.scale = 1;
+    if (auto* one = std::get_if<Constant>(&scene.sizes))
+      one->value *= scale;
+    else
+      scene.scale = scale;
+    return scene;
+  }
+
+  RunOptions sub_options(int n) const {
+    constexpr std::uint64_t seeds = std::uint64_t{1} << 63;  // that a scene can hold
+    const std::uint64_t first = options_.seed.value_or(plan_.scene.seed);
+    return {.seed = (first + static_cast<std::uint64_t>(n)) % seeds,
+            .threads = options_.threads,
+            .monitor = {{}, options_.monitor.cancelled},
+            .checkpoints = {},
+            .engine_folder = options_.engine_folder};
+  }
+
+  /// Whether one of the seeds places all spheres; keeps its packing.
+  bool fits(double scale) {
+    std::optional<Plan> plan;
+    try {
+      plan.emplace(build(scene_at(scale)));
+    } catch (const Error&) {  // too large for the container by themselves
+      return false;
+    }
+    for (int n = 0; n < tries_ && !stopped_; ++n) {
+      last_ = run(*plan, sub_options(n));
+      ++runs_;
+      stopped_ = last_->outcome == Outcome::cancelled;
+      if (!is_packed(last_->outcome)) continue;
+      best_ = std::move(last_);
+      last_.reset();
+      return true;
+    }
+    return false;
+  }
+
+  /// "radius 0.3332 mm", or "scale 1.21".
+  std::string size_in_words(double scale) const {
+    const Scene& scene = plan_.scene;
+    const auto* one = std::get_if<Constant>(&scene.sizes);
+    return one ? fmt::format("{} {:.6g} {}", scene.sizes_are_diameters ? "diameter" : "radius",
+                             one->value * scale, name_of(scene.unit))
+               : fmt::format("scale {:.6g}", scale);
+  }
+
+  std::string in_words(const Packing& packing, double fitting, const std::optional<double>& too_large) const {
+    const std::size_t n = packing.spheres.size();
+    std::string text = fmt::format(
+        "{} of {}, {} {} placed", n == 1 ? "the sphere" : grouped(n) + " spheres", size_in_words(fitting),
+        n == 1 ? "as large as it fits," : "the largest found,", n == 1 ? "is" : "are");
+    if (stopped_) return "stopped by the user: " + text + ", and larger ones may fit";
+    return text + fmt::format("; at {} none of {} seeds placed all",
+                              size_in_words(too_large.value_or(fitting)), tries_);
+  }
+
+  void tell(const std::optional<double>& fitting, const std::optional<double>& too_large,
+            double scale) const {
+    double done = 0;
+    if (fitting && too_large)  // halvings that are done, of those that there are in all
+      done = 0.3 + 0.7 * std::clamp(1 - std::log(std::log(*too_large / *fitting) / known_to) /
+                                            std::log(std::log(step) / known_to),
+                                    0.0, 1.0);
+    options_.monitor.report(
+        {"largest", done,
+         fmt::format("{} spheres of {}", grouped(static_cast<std::uint64_t>(*plan_.scene.target.count)),
+                     size_in_words(scale))});
+  }
+
+  const Plan& plan_;
+  const RunOptions& options_;
+  const int tries_;
+  const Stopwatch watch_;
+  bool stopped_ = false;
+  std::uint64_t runs_ = 0;
+  std::optional<Packing> best_, last_;
+};
+
+}  // namespace
+
+Packing run_largest(const Plan& plan, const RunOptions& options) {
+  Packing packing = Search(plan, options).found();
+  packing.reason = in_dimension(packing.scene.dimension(), packing.reason);
+  return packing;
+}
+
+}  // namespace bernal

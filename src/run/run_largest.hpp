@@ -1,0 +1,14 @@
+#pragma once
+#include "bernal/run/run.hpp"
+
+namespace bernal {
+
+/// The run of a scene whose spheres are to be as large as so many fit, see `Scene::largest`: runs of the same
+/// scene with given sizes, larger ones after each that places all spheres and smaller ones after several
+/// seeds that do not, until the scale is known to 1e-4. The result is that of the run with the largest ones,
+/// and its scene, with their size and its seed, runs again to the same bits. Precondition: the plan is one of
+/// `build`. No time decides anything, so that one seed gives one packing. Cost: some sixty such runs; where
+/// the container is a CAD file, each reads it.
+Packing run_largest(const Plan& plan, const RunOptions& options);
+
+}  // namespace bernal
