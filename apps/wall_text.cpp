@@ -81,8 +81,7 @@ void print_column(const Packing& packing, const ColumnProfile& column) {
 void print_walls(const Packing& packing, const Measurements& measured) {
   const WallProfile& profile = *measured.walls;
   fmt::print(
-      "\nporosity over the distance z from the nearest wall, whichever it is, in mean diameters of {:.6g} "
-      "{}{}\n",
+      "\nporosity over the distance z from the nearest wall, in mean diameters of {:.6g} {}{}\n",
       profile.mean_diameter, name_of(packing.scene.unit), part_of_bed(packing, measured.bed));
   print_profile(profile);
   double error = 0;

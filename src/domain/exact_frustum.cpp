@@ -94,6 +94,11 @@ bool is_crossed_outwards_exactly(const ProfileEdge& edge, const ExactVector& cen
 
 double free_path(const ProfileEdge& edge, const Motion& m, WallArithmetic arithmetic) {
   using Real = FrustumWay::Real;
+  // Of its ends, of which the farther one is nine times as far as everything.
+  const double lengths = 9 * ((m.c - edge.base).norm() + m.r + edge.a.lpNorm<1>() + edge.b.lpNorm<1>());
+  if (arithmetic == WallArithmetic::filtered &&
+      keeps_inside(edge, m.c, m.direction, m.limit, m.r + 64 * tolerance::roundoff * lengths))
+    return m.limit;
   const FrustumWay way(edge, m.c, m.direction);
   const auto clears = [&](double t) { return clears_exactly(edge, place_after(m, t), m.r); };
   if (!(way.distance(0) > m.r + way.error(0, m.r)) && !clears(0)) return 0;

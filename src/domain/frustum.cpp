@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -92,10 +91,14 @@ Real FrustumWay::error(Real t, double r) const {
   return 64 * tiny * (lengths_ + std::abs(t) * speed_ + r);
 }
 
-Real FrustumWay::line_below(Real R, Real from, Real limit) const {
-  if (!(length_ > 0)) return never;
+Real FrustumWay::line_distance(Real t) const {
+  const Point p = at(t);
+  return std::abs((p[0] - a_[0]) * e_[1] - (p[1] - a_[1]) * e_[0]) / length_;
+}
+
+FrustumWay::Crossing FrustumWay::line_below(Real R, Real from, Real limit) const {
   const Real n0 = e_[1] / length_, n1 = -e_[0] / length_;
-  Real first = never;
+  Crossing first;
   for (const Real side : {Real(1), Real(-1)}) {
     const Real k = side * R + n0 * a_[0] + n1 * (a_[1] - z_), m = n1 * vz_;
     Real roots[2];
@@ -117,11 +120,13 @@ Real FrustumWay::line_below(Real R, Real from, Real limit) const {
       // Of the other sign of the root, or of a way that leads away.
       if (std::abs(offset(t)) > std::sqrt(tiny) * (lengths_ + R + std::abs(t) * speed_) || !(slope(t) < 0))
         continue;
-      if (!(t >= from && t <= limit) || t >= first) continue;
+      if (!(t >= from && t <= limit)) continue;
+      first.of_line = std::min(first.of_line, t);
       const Point p = at(t);
       const Real along = (p[0] - a_[0]) * e_[0] + (p[1] - a_[1]) * e_[1];
       const Real rounding = 256 * tiny * length_ * (lengths_ + t * speed_);
-      if (along >= -rounding && along <= length_ * length_ + rounding) first = t;
+      if (along >= -rounding && along <= length_ * length_ + rounding)
+        first.of_edge = std::min(first.of_edge, t);
     }
   }
   return first;
@@ -157,11 +162,13 @@ Real FrustumWay::end_below(const Point& end, Real R, Real from, Real limit) cons
   struct Part {
     Real begin, end;
   };
-  std::vector<Part> parts = {{from, limit}};
+  // Halves of halves, the first on top: one a halving, of which doubles of 64 bits allow no more than these.
+  std::array<Part, 96> parts;
+  std::size_t left = 0;
+  parts[left++] = {from, limit};
   constexpr int most = 4000;
-  for (int k = 0; !parts.empty(); ++k) {
-    auto [begin, last] = parts.back();
-    parts.pop_back();
+  for (int k = 0; left > 0; ++k) {
+    auto [begin, last] = parts[--left];
     if (!(begin <= last)) continue;
     const Real low = at(begin)[0], slope = last > begin ? (at(last)[0] - low) / (last - begin) : 0;
     Real roots[2];
@@ -170,26 +177,56 @@ Real FrustumWay::end_below(const Point& end, Real R, Real from, Real limit) cons
     last = std::min(last, roots[1]);
     if (!(begin <= last)) continue;
     if (excess(begin) <= rounding && falls(begin)) return begin;
-    if (k > most || (last - begin) * speed_ <= 8 * tiny * size) {
-      if (excess(begin) <= rounding || k > most) return begin;
+    const bool gives_up = k > most || left + 2 > parts.size();
+    if (gives_up || (last - begin) * speed_ <= 8 * tiny * size) {
+      if (excess(begin) <= rounding || gives_up) return begin;
       continue;
     }
     const Real middle = begin + (last - begin) / 2;
-    parts.push_back({middle, last});
-    parts.push_back({begin, middle});
+    parts[left++] = {middle, last};
+    parts[left++] = {begin, middle};
   }
   return never;
 }
 
 Real FrustumWay::first_below(Real R, Real from, Real limit) const {
   if (!(R > 0) || !(from <= limit)) return never;
-  Real first = line_below(R, from, limit);
+  Real first = never;
+  if (length_ > 0) {
+    const Crossing crossing = line_below(R, from, limit);
+    first = crossing.of_edge;
+    // Until it comes near the line it is near no end.
+    if (line_distance(from) >= R) {
+      if (crossing.of_line == never) return never;
+      from = std::max(from, crossing.of_line - 64 * tiny * (lengths_ + R) / speed_);
+    }
+  }
   first = std::min(first, end_below(a_, R, from, std::min(first, limit)));
   return std::min(first, end_below({a_[0] + e_[0], a_[1] + e_[1]}, R, from, std::min(first, limit)));
 }
 
+bool keeps_inside(const ProfileEdge& edge, const Vector<3>& c, const Vector<3>& direction, double limit,
+                  double distance) {
+  const double squared_axis = edge.axis.squaredNorm();
+  const Vector<2> e = edge.b - edge.a;
+  const double length = e.norm();
+  const double speed = direction.norm();
+  if (!(length > 0) || !(squared_axis > 0) || !(speed > 0)) return false;
+  // Farther on it is far from the piece for good.
+  limit = std::min(limit, 8 / speed * ((c - edge.base).norm() + edge.a.norm() + edge.b.norm() + distance));
+  const Vector<3> axis = edge.axis / std::sqrt(squared_axis);
+  const auto side_of = [&](const Vector<3>& p) {
+    const Vector<2> w = in_half_plane(p, edge.base, axis) - edge.a;
+    return (e[1] * w[0] - e[0] * w[1]) / length;
+  };
+  const double start = side_of(c), side = start < 0 ? -1 : 1;
+  if (side * e[1] > 0 || !(side * start >= distance)) return false;
+  return side * side_of(c + limit * direction) >= distance;
+}
+
 double first_contact_with_frustum(const ProfileEdge& edge, const Vector<3>& c, double r,
                                   const Vector<3>& direction, double limit, double skin) {
+  if (keeps_inside(edge, c, direction, limit, r + 0.5 * skin)) return limit;
   const FrustumWay way(edge, c, direction);
   const Real stop = static_cast<Real>(r) + skin, ignore = r + Real(0.5) * skin;
   // No way is longer than where everything is behind.

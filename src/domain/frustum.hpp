@@ -56,7 +56,13 @@ class FrustumWay {
   using Point = std::array<Real, 2>;
   using LongVector = Eigen::Matrix<Real, 3, 1>;
   Point at(Real t) const;
-  Real line_below(Real R, Real from, Real limit) const;
+  /// When the way comes nearer than R to the line of the edge, and when to the edge itself with its foot
+  /// between the ends.
+  struct Crossing {
+    Real of_line = never, of_edge = never;
+  };
+  Real line_distance(Real t) const;
+  Crossing line_below(Real R, Real from, Real limit) const;
   Real end_below(const Point& end, Real R, Real from, Real limit) const;
 
   Point a_, e_;  // the first end, and the way to the other
@@ -66,6 +72,12 @@ class FrustumWay {
   Real pp_, pv_, vv_;      // its square is pp + 2 pv t + vv t²; for roots, which near the axis are none too good
   Real speed_, lengths_;
 };
+
+/// Whether the way, as far as c + limit·direction, is known to keep that distance from the piece because it
+/// keeps it from the line of its edge, on the side of the axis, where that distance is concave along the way:
+/// its ends tell. In doubles, to some roundoffs of the lengths; most questions in a convex vessel end here.
+bool keeps_inside(const ProfileEdge& edge, const Vector<3>& c, const Vector<3>& direction, double limit,
+                  double distance);
 
 /// The rule of kernels/first_contact.hpp for a piece.
 double first_contact_with_frustum(const ProfileEdge& edge, const Vector<3>& c, double r,

@@ -10,7 +10,9 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/settle/insert.hpp"
 #include "bernal/sizes/percentiles.hpp"
+#include "plan/estimate.hpp"
 #include "scene/size_kinds.hpp"
 #include "sizes/volume_carriers.hpp"
 
@@ -104,10 +106,11 @@ std::string hint_of_pan(const Plan& plan) {
   if (!sieve || sieve->pan) return {};
   const SieveCurve curve = curve_of(*sieve);
   if (curve.in_pan == 0) return {};
+  const double scale = plan.scene.scale;
   return fmt::format(
       "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; \"pan\" "
       "says how fine they are",
-      100 * curve.in_pan, curve.pan, curve.openings[1], name_of(plan.scene.unit));
+      100 * curve.in_pan, scale * curve.pan, scale * curve.openings[1], name_of(plan.scene.unit));
 }
 
 std::string hint_of_ends(const Plan& plan) {
@@ -115,10 +118,28 @@ std::string hint_of_ends(const Plan& plan) {
   if (!given || given->law != PercentileLaw::through || (given->min && given->max)) return {};
   const auto curve = curve_through(given_percentiles(*given), given->min.value_or(0),
                                    given->max.value_or(std::numeric_limits<double>::infinity()));
+  const double scale = plan.scene.scale;
   return fmt::format(
       "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles goes "
       "on straight; \"min\" and \"max\" say where",
-      curve.front().size, curve.back().size, name_of(plan.scene.unit));
+      scale * curve.front().size, scale * curve.back().size, name_of(plan.scene.unit));
+}
+
+/// Of equal spheres that are to fill a container, where a crystal is likely to hold more.
+std::string hint_of_crystal(const Plan& plan) {
+  constexpr double worth_telling = 1.01;
+  const Scene& scene = plan.scene;
+  if (!scene.target.fill || !std::holds_alternative<Constant>(scene.sizes) || scene.dimension() != 3 ||
+      !has_walls(plan.domain) || !scene.stages_are_default || !plan.start.spheres.empty())
+    return {};
+  Scene crystal = scene;
+  crystal.stages = {Insert{.layout = Layout::fcc, .packing_fraction = 1}};
+  const double reached = expected_packing_fraction(crystal, plan.domain, *plan.radii, plan.container);
+  if (!(reached > worth_telling * plan.expected_packing_fraction)) return {};
+  return fmt::format(
+      "a face-centred crystal may hold more of these equal spheres, about {:.2g} of the volume in place of "
+      "{:.2g}: say [[stage]] with do = \"insert\" and layout = \"fcc\"",
+      reached, plan.expected_packing_fraction);
 }
 
 }  // namespace
@@ -126,7 +147,7 @@ std::string hint_of_ends(const Plan& plan) {
 std::vector<std::string> hints_of(const Plan& plan) {
   std::vector<std::string> all;
   for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan), hint_of_basis(plan),
-                           hint_of_pan(plan), hint_of_ends(plan)})
+                           hint_of_pan(plan), hint_of_ends(plan), hint_of_crystal(plan)})
     if (!hint.empty()) all.push_back(std::move(hint));
   return all;
 }
