@@ -390,6 +390,7 @@ std::vector<WallBond> wall_bonds(const Spheres<dynamic>& spheres, const Domain& 
   template std::vector<BondIn<D>> bonds_in<D>(const Spheres<dynamic>&, const Domain&, double);
 BERNAL_BONDS_IN(1)
 BERNAL_BONDS_IN(2)
+BERNAL_BONDS_IN(3)
 BERNAL_BONDS_IN(4)
 BERNAL_BONDS_IN(5)
 BERNAL_BONDS_IN(6)

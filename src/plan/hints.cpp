@@ -106,10 +106,11 @@ std::string hint_of_pan(const Plan& plan) {
   if (!sieve || sieve->pan) return {};
   const SieveCurve curve = curve_of(*sieve);
   if (curve.in_pan == 0) return {};
+  const double scale = plan.scene.scale;
   return fmt::format(
       "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; \"pan\" "
       "says how fine they are",
-      100 * curve.in_pan, curve.pan, curve.openings[1], name_of(plan.scene.unit));
+      100 * curve.in_pan, scale * curve.pan, scale * curve.openings[1], name_of(plan.scene.unit));
 }
 
 std::string hint_of_ends(const Plan& plan) {
@@ -117,10 +118,11 @@ std::string hint_of_ends(const Plan& plan) {
   if (!given || given->law != PercentileLaw::through || (given->min && given->max)) return {};
   const auto curve = curve_through(given_percentiles(*given), given->min.value_or(0),
                                    given->max.value_or(std::numeric_limits<double>::infinity()));
+  const double scale = plan.scene.scale;
   return fmt::format(
       "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles goes "
       "on straight; \"min\" and \"max\" say where",
-      curve.front().size, curve.back().size, name_of(plan.scene.unit));
+      scale * curve.front().size, scale * curve.back().size, name_of(plan.scene.unit));
 }
 
 /// Of equal spheres that are to fill a container, where a crystal is likely to hold more.

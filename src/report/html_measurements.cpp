@@ -42,7 +42,10 @@ void write_radial(Page& page, const RadialDistribution& radial) {
            radial_chart(radial));
   page.raw(
       "<p>The radial distribution function g(r): how many centres lie at a distance from a centre, compared "
-      "with as many spread by chance. The band is the standard error of the count.</p>\n");
+      "with as many spread by chance");
+  if (!radial.share.empty())
+    page.raw(" where centres may be between the walls, and in a bed below its level");
+  page.raw(". The band is the standard error.</p>\n");
   if (!radial.peaks.empty()) {
     page.raw("<table><tr><th>peak at, in mean diameters</th><th class=\"n\">g</th></tr>\n");
     for (const auto& peak : radial.peaks)

@@ -78,10 +78,14 @@ std::string asked_cell(const SizeDistribution* asked, double share) {
 }
 
 void write_classes(Page& page, const Sizes& sizes, const std::map<double, std::uint64_t>& classes,
-                   const SizeDistribution* asked, const Classes* stated) {
+                   const SizeDistribution* asked, const Packing& packing) {
+  const auto* stated = std::get_if<Classes>(&packing.scene.sizes);
+  const auto class_at = [&](double size) {
+    return stated ? class_of(*stated, size / (packing.scene.scale * packing.size_scale)) : std::nullopt;
+  };
   double volume = 0, mass = 0;
   const auto density = [&](double size) {
-    const auto k = stated ? class_of(*stated, size) : std::nullopt;
+    const auto k = class_at(size);
     return k && !stated->material_densities.empty() ? stated->material_densities[*k] : 0.0;
   };
   for (const auto& [size, count] : classes) {
@@ -100,7 +104,7 @@ void write_classes(Page& page, const Sizes& sizes, const std::map<double, std::u
     const double radius = size / sizes.factor;
     const double share =
         asked ? asked->cumulative(radius * (1 + same)) - asked->cumulative(radius * (1 - same)) : 0;
-    const auto k = stated ? class_of(*stated, size) : std::nullopt;
+    const auto k = class_at(size);
     page.add(
         "<tr>{}<td>{:.6g}</td><td class=\"n\">{}</td><td class=\"n\">{:.2f}</td>{}<td "
         "class=\"n\">{:.2f}</td>{}{}</tr>\n",
@@ -204,7 +208,7 @@ void write_sizes(Page& page, const Report& report) {
   }
   if (classes.size() <= most_classes) {
     page.add("<p>In {}.</p>\n", unit);
-    write_classes(page, sizes, classes, report.asked, std::get_if<Classes>(&report.packing.scene.sizes));
+    write_classes(page, sizes, classes, report.asked, report.packing);
   } else {
     SizeHistogram histogram{sizes.values,
                             sizes.dimension,

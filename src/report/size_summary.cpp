@@ -32,7 +32,7 @@ std::vector<SizeSummary::Share> shares_of(const Scene& scene, const SizeDistribu
         SizeSummary::Share{factor_of(scene) * r, {}, number,
                            number * std::pow(r, dimension) / radii.moment(dimension), {}});
     all += number;
-    const auto k = classes ? class_of(*classes, share.size) : std::nullopt;
+    const auto k = classes ? class_of(*classes, share.size / scene.scale) : std::nullopt;
     if (k && !classes->names.empty()) share.name = classes->names[*k];
     if (k && !classes->material_densities.empty())
       mass += *(share.mass = share.volume * classes->material_densities[*k]);
@@ -56,7 +56,7 @@ SizeSummary summary_of(const Scene& scene, const SizeDistribution& radii) {
     for (const NamedPercentile& each : named_percentiles)
       if (const auto& size = given->*each.member)
         summary.fit.push_back(
-            {each.name, each.share, *size, 2 * radius_below(radii, each.share, given->basis)});
+            {each.name, each.share, scene.scale * *size, 2 * radius_below(radii, each.share, given->basis)});
   return summary;
 }
 

@@ -30,7 +30,7 @@ namespace bernal {
 namespace {
 
 /// Enough for curves that are smooth to the eye; `bernal measure` takes more.
-constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5;
+constexpr double distances_for_a_report = 2e6, wall_distances_for_a_report = 2e5, places_for_a_report = 1e6;
 constexpr std::uint32_t points_for_a_report = 4000, pore_points_for_a_report = 10000;
 /// Of more spheres, cells and waves would take longer than many a packing; all cells of fewer already would,
 /// of which a sample says nearly as much.
@@ -99,7 +99,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
       measure(packing.spheres, packing.domain, radii.asked,
               {.gap = packing.scene.gap,
                .wall_gap = packing.scene.wall_gap,
-               .radial = {.work = distances_for_a_report},
+               .radial = {.work = distances_for_a_report, .places = places_for_a_report},
                .size_correlation = {.work = distances_for_a_report},
                .chambers = {.points = points_for_a_report},
                .bed = bed_options_of(packing.scene),

@@ -236,6 +236,34 @@ TEST(SizeArguments, AreRefusedWhereAbsurd) {
       [] { make_fuller(1, 0.5, 2); },
       [] { make_fuller(infinity, 0.5, 1); },
       [] { make_fuller(1, -0.5, 0.1); },
+      [] { make_lognormal_of_mean(0, 1, Basis::number, 0, infinity); },
+      [] { make_lognormal_of_mean(1, 0, Basis::number, 0, infinity); },
+      [] { make_histogram({1}, {}, Basis::number); },
+      [] {
+        make_histogram({1, 2}, {1, 1}, Basis::number);
+      },
+      [] {
+        make_histogram({2, 1}, {1}, Basis::mass);
+      },
+      [] {
+        make_histogram({0, 1}, {1}, Basis::mass);
+      },
+      [] {
+        make_histogram({1, 2}, {0}, Basis::mass);
+      },
+      [=] {
+        make_histogram({1, 2, 3}, {1, nan}, Basis::number);
+      },
+      [] { make_from_percentiles({{0.5, 1}}, PercentileLaw::lognormal, Basis::volume, 0, infinity); },
+      [] {
+        make_from_percentiles({{0.1, 2}, {0.9, 1}}, PercentileLaw::lognormal, Basis::volume, 0, infinity);
+      },
+      [] {
+        make_from_percentiles({{0.1, 1}, {1, 2}}, PercentileLaw::through, Basis::volume, 0, infinity);
+      },
+      [] {  // without "min"
+        make_from_percentiles({{0.1, 1}, {0.9, 2}}, PercentileLaw::rosin_rammler, Basis::volume, 0, infinity);
+      },
       [] { make_mixture({}, {}, Basis::number); },
       [] { testing::mixture_of(make_constant(1), make_constant(2), 1, Basis::number); },
   };

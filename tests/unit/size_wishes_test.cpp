@@ -80,7 +80,7 @@ TEST(Percentiles, OfRosinAndRammlerAreTheirClosedForm) {
 }
 
 TEST(Percentiles, AreMetExactlyByTwoAndByACurveThroughThem) {
-  const std::vector<Percentile> two = {{0.16, 1.5}, {0.84, 2.5}}, many = {{0.05, 1}, {0.5, 3}, {0.6, 3.1}, {0.95, 8}};
+  const std::vector<Percentile> two = {{0.16, 1.8}, {0.84, 2.2}}, many = {{0.05, 1}, {0.5, 3}, {0.6, 3.1}, {0.95, 8}};
   for (const Basis basis : {Basis::number, Basis::volume}) {
     for (const PercentileLaw law : {PercentileLaw::lognormal, PercentileLaw::normal}) {
       const auto sizes = make_from_percentiles(two, law, basis, 0, infinity);

@@ -100,12 +100,14 @@ def measure(packing: Packing | PathLike, *, gap: float = 0.002, progress: Progre
     """Measures contacts, rattlers, g(r), chambers, porosity near walls, order, and sizes against those asked for, of a
     packing or of the files in a folder.
 
-    Keys are those of `bernal measure --json`: n, dimension, unit, phi, coordination, rattlers, backbone, fabric, by_gap, g_r
-    (r, g and error of shape (bins,)), size_correlation, crystalline, chambers, bed (height, porosity and layers of
-    a bed, and how many of its spheres do not rest), walls, sizes, hash. Lists of numbers
-    are arrays. Lengths are in the scene's unit. What does not apply is None, such as g_r between walls.
-    Also `per_sphere`, arrays of shape (N,): coordination (contacts with spheres), local_packing_fraction (the sphere's volume over that of its cell in the
-    radical diagram), cell_volume, neighbours (faces of the cell), and in containers chamber (-1: in none).
+    Keys are those of `bernal measure --json`: n, dimension, unit, phi, coordination, rattlers, backbone, fabric, by_gap,
+    g_r (r, g and error of shape (bins,); between walls also share), size_correlation, crystalline, chambers, bed (height,
+    porosity and layers of a bed, and how many of its spheres do not rest), walls, column (along its axis, and from its
+    side, floor and lid), sizes, hash. Lists of numbers are arrays. Lengths are in the scene's unit. What does not apply
+    is None, such as walls in a periodic box.
+    Also `per_sphere`, arrays of shape (N,): coordination (contacts with other spheres), local_packing_fraction (the
+    sphere's volume over that of its cell in the radical diagram), cell_volume, neighbours (faces of the cell), and in
+    containers chamber (-1: in none).
 
     gap : spheres touch if the gap over the sum of their radii is below it.
     """
