@@ -43,16 +43,16 @@ double shell_volume(int dimension, double from, double to) {
 }
 
 /// Pairs of two references count from both ends; the error is that of the expected number of distinct pairs.
-void normalise(const std::vector<std::uint64_t>& counts, const Spheres<dynamic>& spheres, double volume,
+void normalise(const std::vector<std::uint64_t>& counts, int dimension, std::size_t spheres, double volume,
                RadialDistribution& radial) {
-  const auto n = static_cast<double>(spheres.size());
+  const auto n = static_cast<double>(spheres);
   const auto references = static_cast<double>(radial.references);
   const double density = (n - 1) / volume;
-  const double distinct = share_of_distinct(radial.references, spheres.size());
+  const double distinct = share_of_distinct(radial.references, spheres);
   for (std::size_t k = 0; k < counts.size(); ++k) {
     const double from = static_cast<double>(k) * radial.bin_width, to = from + radial.bin_width;
     const double share = radial.share.empty() ? 1 : radial.share[k];
-    const double expected = references * density * share * shell_volume(spheres.dimension(), from, to);
+    const double expected = references * density * share * shell_volume(dimension, from, to);
     const auto count = static_cast<double>(counts[k]);
     const double g = count / expected;
     radial.r.push_back(0.5 * (from + to));
@@ -92,6 +92,21 @@ struct Window {
   }
 };
 
+/// Those that lie there, with the rounding of those that touch the walls.
+Spheres<3> centers_in(const Window& window, const Spheres<3>& all) {
+  constexpr double rounding = 1e-6;
+  std::vector<std::uint8_t> inside(all.size());
+  parallel_for(all.size(), [&](std::size_t i) {
+    const Vector<3> c = all.center(i);
+    inside[i] = (!window.below || window.below->contains(c)) &&
+                window.container.clearance_within(c, 2 * window.margin) >= (1 - rounding) * window.margin;
+  });
+  Spheres<3> centers;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (inside[i]) centers.push_back(all.center(i), all.r[i]);
+  return centers;
+}
+
 /// The mean share of the shells about the centres that lies in the window: of every bin as many places, each
 /// in a random direction from one of the centres, which take turns.
 void sample_shares(const Window& window, const Spheres<3>& centers, double width, double places,
@@ -124,24 +139,20 @@ void between_walls(const Spheres<dynamic>& spheres, const Domain& domain, const 
   const Frame frame = frame_of(domain);
   const auto container = local_container(domain, made);
   const auto below = options.below ? std::optional(options.below->to_local(frame)) : std::nullopt;
-  Spheres<dynamic> counted = spheres;
-  Spheres<3> centers = localised(spheres, frame);
-  if (below) {
-    counted = Spheres<dynamic>(3);
-    const Spheres<3> all = std::move(centers);
-    centers = {};
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (!below->contains(all.center(i))) continue;
-      centers.push_back(all.center(i), all.r[i]);
-      counted.push_back(spheres.center(i), spheres.r[i]);
-    }
+  const Spheres<3> all = localised(spheres, frame);
+  const double smallest = *std::ranges::min_element(all.r), diameter = radial.mean_diameter / frame.scale;
+  Window window{*container, below, diameter, 0};
+  Spheres<3> centers = centers_in(window, all);
+  if (2 * centers.size() < all.size()) {
+    window.margin = smallest;
+    centers = centers_in(window, all);
   }
   if (centers.size() < 2) return;
-  const double smallest = *std::ranges::min_element(centers.r), width = radial.bin_width / frame.scale;
+  const double width = radial.bin_width / frame.scale;
   const double places = options.places * (std::holds_alternative<Mesh>(domain) ? 0.2 : 1.0);
-  const Depths depths(to_local(domain, frame), *container, 2 * smallest,
+  const Depths depths(to_local(domain, frame), *container, 2 * window.margin,
                       static_cast<std::size_t>(std::max(places / 4, 1e4)), below);
-  const Window window{*container, below, smallest, depths.volume() * depths.deeper(smallest)};
+  window.volume = depths.volume() * depths.deeper(window.margin);
   if (!(window.volume > 0)) return;
   sample_shares(window, centers, width, places, radial, bins);
   while (!radial.share.empty() && radial.share.back() < RadialOptions::least_share) {
@@ -152,7 +163,7 @@ void between_walls(const Spheres<dynamic>& spheres, const Domain& domain, const 
   const Histogram empty(radial.share.size(), width);
   const Histogram found = tally_of_pairs<3>(centers, localised(boundary_of<3>(domain), frame), empty,
                                             options.work, radial.references);
-  normalise(found.counts(), counted, window.volume * std::pow(frame.scale, 3), radial);
+  normalise(found.counts(), 3, centers.size(), window.volume * std::pow(frame.scale, 3), radial);
 }
 
 }  // namespace
@@ -192,7 +203,7 @@ std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>& sp
     found =
         tally_of_pairs<D>(spheres.in<D>(), boundary_of<D>(domain), empty, options.work, radial.references);
   });
-  normalise(found.counts(), spheres, volume_of(domain), radial);
+  normalise(found.counts(), spheres.dimension(), spheres.size(), volume_of(domain), radial);
   find_peaks(radial);
   return radial;
 }

@@ -371,31 +371,30 @@ void visit_walls(const Spheres<dynamic>& spheres, const Domain& domain, double w
 std::vector<NearWall> near_walls(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
                                  const std::shared_ptr<const Container>& made) {
   std::vector<NearWall> near;
-  visit_walls(spheres, domain, widest_gap, made,
-              [&](std::uint32_t i, double gap, const Vector<dynamic>&) { near.push_back({i, gap}); });
+  const auto add = [&](std::uint32_t i, double gap, const auto&) { near.push_back({i, gap}); };
+  visit_walls(spheres, domain, widest_gap, made, add);
   return near;
 }
 
 std::vector<WallBond> wall_bonds(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
                                  const std::shared_ptr<const Container>& made) {
   std::vector<WallBond> near;
-  visit_walls(spheres, domain, widest_gap, made,
-              [&](std::uint32_t i, double gap, const Vector<dynamic>& outward) {
-                near.push_back({i, outward, gap});
-              });
+  visit_walls(spheres, domain, widest_gap, made, [&](std::uint32_t i, double gap, const auto& outward) {
+    near.push_back({i, outward, gap});
+  });
   return near;
 }
 
 #define BERNAL_BONDS_IN(D) \
-  template std::vector<BondIn<D>> bonds_in<D>(const Spheres<dynamic>&, const Domain&, double);
-BERNAL_BONDS_IN(1)
-BERNAL_BONDS_IN(2)
-BERNAL_BONDS_IN(3)
-BERNAL_BONDS_IN(4)
-BERNAL_BONDS_IN(5)
-BERNAL_BONDS_IN(6)
-BERNAL_BONDS_IN(7)
-BERNAL_BONDS_IN(8)
+  template std::vector<BondIn<D>> bonds_in<D>(const Spheres<dynamic>&, const Domain&, double)
+BERNAL_BONDS_IN(1);
+BERNAL_BONDS_IN(2);
+BERNAL_BONDS_IN(3);
+BERNAL_BONDS_IN(4);
+BERNAL_BONDS_IN(5);
+BERNAL_BONDS_IN(6);
+BERNAL_BONDS_IN(7);
+BERNAL_BONDS_IN(8);
 #undef BERNAL_BONDS_IN
 
 }  // namespace bernal

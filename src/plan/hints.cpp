@@ -139,7 +139,7 @@ std::string hint_of_crystal(const Plan& plan) {
       !has_walls(plan.domain) || !scene.stages_are_default || !plan.start.spheres.empty())
     return {};
   Scene crystal = scene;
-  crystal.stages = {Insert{.layout = Layout::fcc, .packing_fraction = 1}};
+  crystal.stages = {Insert{.layout = Layout::fcc}};
   const double reached = expected_packing_fraction(crystal, plan.domain, *plan.radii, plan.container);
   if (!(reached > worth_telling * plan.expected_packing_fraction)) return {};
   return fmt::format(

@@ -44,7 +44,7 @@ void write_radial(Page& page, const RadialDistribution& radial) {
       "<p>The radial distribution function g(r): how many centres lie at a distance from a centre, compared "
       "with as many spread by chance");
   if (!radial.share.empty())
-    page.raw(" where centres may be between the walls, and in a bed below its level");
+    page.raw(" a mean diameter or more off the walls, and in a bed below its level");
   page.raw(". The band is the standard error.</p>\n");
   if (!radial.peaks.empty()) {
     page.raw("<table><tr><th>peak at, in mean diameters</th><th class=\"n\">g</th></tr>\n");

@@ -133,7 +133,7 @@ void complete_insert(Insert& insert, Scene& scene, const schema::Section& sectio
                      "must be \"fcc\", \"bcc\", \"hcp\" or \"sc\" in a periodic box; \"fly\" fills one at random");
     if (box->scalable) section.refuse("layout", "needs a periodic box of given \"size\" or \"edge\"");
   }
-  insert.packing_fraction = insert.until();
+  if (!insert.is_crystal()) insert.packing_fraction = insert.until();
 }
 
 StageEnd insert_crystal(const Insert& options, SpheresInBed& in_bed, Reporter& report) {

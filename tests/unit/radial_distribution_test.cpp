@@ -157,18 +157,18 @@ TEST(RadialDistribution, OfAnIdealGasBetweenWallsIsOne) {
 
 TEST(RadialDistribution, OfSpheresAboveTheLevelCountsNone) {
   Spheres<3> spheres;
-  spheres.push_back({2, 2, 1}, 0.5);
-  spheres.push_back({3, 2, 1}, 0.5);
-  spheres.push_back({2, 3, 5}, 0.5);
-  spheres.push_back({3, 3, 5}, 0.5);
-  const Box box{Vector<3>::Zero(), Vector<3>(5, 5, 8)};
+  spheres.push_back({2, 2, 2}, 0.5);
+  spheres.push_back({3, 2, 2}, 0.5);
+  spheres.push_back({2, 3, 6}, 0.5);
+  spheres.push_back({3, 3, 6}, 0.5);
+  const Box box{Vector<3>::Zero(), Vector<3>(6, 6, 9)};
   const auto pairs = [&](const RadialDistribution& found) {
     double sum = 0;
     for (const double g : found.g) sum += g > 0;
     return sum;
   };
   const auto all = radial_distribution(spheres, box), bed = radial_distribution(
-      spheres, box, {.below = LowerPart{-Vector<3>::UnitZ(), 3}});
+      spheres, box, {.below = LowerPart{-Vector<3>::UnitZ(), 4}});
   ASSERT_TRUE(all && bed);
   EXPECT_EQ(pairs(*all), 3);  // at 1, and from one pair to the other at 4.123 and 4.243
   EXPECT_EQ(pairs(*bed), 1);

@@ -17,9 +17,10 @@ namespace bernal {
 ///   shell).
 /// It is 1 for an ideal gas. Lengths are in the scene's unit.
 ///
-/// Between walls, V is the volume of the places that a centre of the smallest sphere may have, and of every
-/// shell only the share that lies there counts: so walls alone leave g at 1, and what it shows near them is how
-/// spheres lie there. Of a bed, V ends at its level, and only spheres with their centre below it count.
+/// Between walls, only centres at least a mean diameter off every wall count, which leaves the layer at the
+/// walls out; or where those are fewer than half of all, every centre. V is the volume where such centres may
+/// be, and of every shell the share counts that lies there: so g of points at random is 1. Of a bed, V ends at
+/// its level.
 struct RadialDistribution {
   double mean_diameter = 0;
   double bin_width = 0;   ///< w
@@ -27,7 +28,7 @@ struct RadialDistribution {
   std::vector<double> g;
   /// Standard error of g from counting, that of one pair if none was found; between walls also from `share`.
   std::vector<double> error;
-  /// Between walls: of the shells about the centres, the mean share that lies inside, and its standard error.
+  /// Between walls: of the shells about the centres, the mean share that lies in V, and its standard error.
   /// Empty in periodic boxes.
   std::vector<double> share, share_error;
   std::uint64_t references = 0;  ///< centres used as origin, evenly spread
