@@ -20,7 +20,11 @@ constexpr double same_distance = 1e-12;
 WallView<3> view_of_facet(const Facet& facet, const Vector<3>& p) {
   const double d = distance(facet, p);
   if (facet.kind == Facet::Kind::plane) return {facet.b, d};
-  if (facet.kind == Facet::Kind::frustum) return {(p - closest_point(facet, p)).stableNormalized(), d};
+  if (facet.kind == Facet::Kind::frustum) {
+    Facet piece = facet;
+    piece.radius = 0;
+    return {(p - closest_point(piece, p)).stableNormalized(), d};
+  }
   Vector<3> inward = facet.a - p;
   if (facet.kind == Facet::Kind::cylinder) inward -= inward.dot(facet.b) * facet.b;
   return {inward.stableNormalized(), d};

@@ -17,13 +17,19 @@ bool FacetTable::find(const Facet& facet, Number& number) const {
   return false;
 }
 
+/// Distances are those from the facets, of a frustum as of a triangle.
+static Facet without_inset(Facet facet) {
+  if (facet.kind == Facet::Kind::frustum) facet.radius = 0;
+  return facet;
+}
+
 void FacetTable::add(const Facet& facet) {
   numbers_.emplace(facet.id, static_cast<Number>(facets_.size()));
   facets_.push_back(facet);
   if (facet.kind == Facet::Kind::triangle)
     ready_.emplace_back(PreparedTriangle(facet.a, facet.b, facet.c));
   else
-    ready_.emplace_back(facet);
+    ready_.emplace_back(without_inset(facet));
 }
 
 FacetTable::Number FacetTable::number_of(const Facet& facet) {

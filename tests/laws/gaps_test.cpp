@@ -40,6 +40,11 @@ std::vector<Case> cases() {
   const std::string ball = "[container]\nkind = \"sphere\"\nradius = 0.6\ncenter = [1, 2, 3]\n";
   const std::string column =
       "[container]\nkind = \"cylinder\"\nradius = 0.5\nheight = 1.0\nperiodic = true\n";
+  const std::string tube =
+      "[container]\nkind = \"tube\"\nradius = 0.7\ninner_radius = 0.25\nheight = 1.0\nbase = [1, 2, 3]\n";
+  const std::string vessel =
+      "[container]\nkind = \"revolved\"\nprofile = [[0.2, 0], [0.2, 0.3], [0.7, 0.8], [0.7, 1.4]]\n"
+      "axis = [1.0, 2.0, 3.0]\n";
   const std::string periodic = "[container]\nkind = \"periodic\"\n";
   const std::string between = periodic + "size = [1.0, 1.2, 0.9]\nwalls = [1]\n";
   const std::string square = "[container]\nkind = \"box\"\nsize = [10, 7]\n";
@@ -62,6 +67,11 @@ std::vector<Case> cases() {
       {"RelaxedInAnObliqueCylinder", oblique, wide, relaxed, 0.03},
       {"SettledInASphere", ball, "fill = true\n" + wide, settled, 0.02},
       {"GrownInASphere", ball, equal, grown, 0.02},
+      {"SettledInATube", tube, "fill = true\n" + equal, settled, 0.02},
+      {"RelaxedInATube", tube, wide, relaxed, 0.02},
+      {"PolishedInATube", tube, "radius = 0.1\n", stage("relax", "polish = 1e-10"), 0.02},
+      {"SettledInAVessel", vessel, "fill = true\n" + wide, settled, 0.02},
+      {"RelaxedInAVessel", vessel, equal, relaxed, 0.03},
       {"RelaxedInAColumn", column, equal, relaxed, 0.02},
       {"SettledInAColumn", column, "fill = true\nradius = 0.06\n", settled, 0.015},
       {"GrownInAColumn", column, equal, grown, 0.02},
