@@ -40,8 +40,8 @@ std::string hint_of_floating(const Plan& plan) {
   const Scene& scene = plan.scene;
   const auto* cylinder = std::get_if<Cylinder>(&scene.container);
   const bool has_floor = !scene.is_periodic() && scene.dimension() == 3 && !(cylinder && cylinder->periodic);
-  if (!has_floor || !scene.stages_are_default || scene.target.bed.is_asked() || !scene.target.count ||
-      !plan.start.spheres.empty() ||
+  if (!has_floor || scene.largest || !scene.stages_are_default || scene.target.bed.is_asked() ||
+      !scene.target.count || !plan.start.spheres.empty() ||
       plan.expected_packing_fraction > well_below * plan.attainable_packing_fraction)
     return {};
   const auto count = static_cast<std::uint64_t>(*scene.target.count);
@@ -111,7 +111,8 @@ std::string hint_of_pan(const Plan& plan) {
   if (curve.in_pan == 0) return {};
   const double scale = plan.scene.scale;
   return fmt::format(
-      "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; \"pan\" "
+      "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; "
+      "\"pan\" "
       "says how fine they are",
       100 * curve.in_pan, scale * curve.pan, scale * curve.openings[1], name_of(plan.scene.unit));
 }
@@ -123,7 +124,8 @@ std::string hint_of_ends(const Plan& plan) {
                                    given->max.value_or(std::numeric_limits<double>::infinity()));
   const double scale = plan.scene.scale;
   return fmt::format(
-      "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles goes "
+      "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles "
+      "goes "
       "on straight; \"min\" and \"max\" say where",
       scale * curve.front().size, scale * curve.back().size, name_of(plan.scene.unit));
 }
@@ -149,8 +151,8 @@ std::string hint_of_crystal(const Plan& plan) {
 
 std::vector<std::string> hints_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan), hint_of_basis(plan),
-                           hint_of_pan(plan), hint_of_ends(plan), hint_of_crystal(plan)})
+  for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan),
+                           hint_of_basis(plan), hint_of_pan(plan), hint_of_ends(plan), hint_of_crystal(plan)})
     if (!hint.empty()) all.push_back(std::move(hint));
   return all;
 }
