@@ -249,14 +249,16 @@ double close_packing_fraction(const SizeDistribution& radii, int dimension) {
 }
 
 double gain_of_stages(const Scene& scene, const SizeDistribution& radii) {
-  double gain = 1;
+  double gain = 0;  // no less than what one of them makes by itself
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   const bool has_walls = box && !box->walls.empty();
-  for (const Stage& stage : scene.stages)
-    if (const StageEntry& entry = entry_of(stage); entry.gain)
-      gain = std::max(gain, entry.gain(entry.table.options(stage), radii, scene.dimension(),
-                                       entry.table.traits.stands_in_bed(scene) || has_walls));
-  return gain;
+  for (const Stage& stage : scene.stages) {
+    const StageEntry& entry = entry_of(stage);
+    gain = std::max(gain, entry.gain ? entry.gain(entry.table.options(stage), radii, scene.dimension(),
+                                                  entry.table.traits.stands_in_bed(scene) || has_walls)
+                                     : 1);
+  }
+  return gain > 0 ? gain : 1;
 }
 
 double reached_by_last(const Scene& scene) {
