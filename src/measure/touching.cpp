@@ -236,12 +236,11 @@ namespace {
 
 template <int D, class As>
 Parts<As> parts_in_dimension(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
-  if constexpr (D == 3) {
+  if (spheres.empty()) return {};
+  if constexpr (D == 3)
     return parts_in_space(spheres, domain, as);
-  } else {
-    if (spheres.empty()) return {};
+  else
     return parts_among<D>(spheres.in<D>(), boundary_of<D>(domain), as);
-  }
 }
 
 }  // namespace

@@ -122,18 +122,19 @@ Part part_to_fill(const Scene& scene, const Domain& shape, const std::shared_ptr
   const double scale = frame_of(shape).scale;
   const Vector<3> down = down_in(scene);
   const BedTop top(bed, *part.container, down);
-  const Heights heights(*part.container, top, VolumeBelow(to_local(shape, frame_of(shape)), down).lowest());
-  const double level = heights.ground() + bed.above_ground / scale;
-  const double below = heights.volume_below(level), whole = part.container->volume();
+  const VolumeBelow volume_below(to_local(shape, frame_of(shape)), down);
+  const double above_ground = bed.above_ground / scale, level = volume_below.lowest() + above_ground;
+  const double whole = part.container->volume();
+  const auto* mesh = top.is_level() ? std::get_if<Mesh>(&shape) : nullptr;
+  const double below =
+      mesh ? volume_below(level) : Heights(*part.container, top, volume_below.lowest()).volume_below(level);
   if (!(below > 0 && below < whole)) return part;
   const double share = below / whole, height = down.cwiseAbs().dot(part.container->bounds().size()) * scale;
-  const auto* mesh = std::get_if<Mesh>(&shape);
-  if (mesh && top.is_level()) {
-    const Vector<3> up = -down;
-    const VolumeBelow volume_below(shape, down);
-    const double at = volume_below.lowest() + bed.above_ground, step = 1e-3 * bed.above_ground;
-    const double surface = (volume_below(at + step) - volume_below(at - step)) / (2 * step);
-    part.area = area_below(*mesh, up, at) + surface;
+  if (mesh) {
+    const double step = 1e-3 * above_ground;
+    const double surface = (volume_below(level + step) - volume_below(level - step)) / (2 * step);
+    const double ground = VolumeBelow(shape, down).lowest();
+    part.area = area_below(*mesh, -down, ground + bed.above_ground) + scale * scale * surface;
   } else {
     const double section = part.volume / height;
     part.area = 2 * section + share * std::max(0.0, part.area - 2 * section);
@@ -248,14 +249,16 @@ double close_packing_fraction(const SizeDistribution& radii, int dimension) {
 }
 
 double gain_of_stages(const Scene& scene, const SizeDistribution& radii) {
-  double gain = 1;
+  double gain = 0;  // no less than what one of them makes by itself
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   const bool has_walls = box && !box->walls.empty();
-  for (const Stage& stage : scene.stages)
-    if (const StageEntry& entry = entry_of(stage); entry.gain)
-      gain = std::max(gain, entry.gain(entry.table.options(stage), radii, scene.dimension(),
-                                       entry.table.traits.stands_in_bed(scene) || has_walls));
-  return gain;
+  for (const Stage& stage : scene.stages) {
+    const StageEntry& entry = entry_of(stage);
+    gain = std::max(gain, entry.gain ? entry.gain(entry.table.options(stage), radii, scene.dimension(),
+                                                  entry.table.traits.stands_in_bed(scene) || has_walls)
+                                     : 1);
+  }
+  return gain > 0 ? gain : 1;
 }
 
 double reached_by_last(const Scene& scene) {

@@ -40,8 +40,8 @@ std::string hint_of_floating(const Plan& plan) {
   const Scene& scene = plan.scene;
   const auto* cylinder = std::get_if<Cylinder>(&scene.container);
   const bool has_floor = !scene.is_periodic() && scene.dimension() == 3 && !(cylinder && cylinder->periodic);
-  if (!has_floor || !scene.stages_are_default || scene.target.bed.is_asked() || !scene.target.count ||
-      !plan.start.spheres.empty() ||
+  if (!has_floor || scene.largest || !scene.stages_are_default || scene.target.bed.is_asked() ||
+      !scene.target.count || !plan.start.spheres.empty() ||
       plan.expected_packing_fraction > well_below * plan.attainable_packing_fraction)
     return {};
   const auto count = static_cast<std::uint64_t>(*scene.target.count);
@@ -80,25 +80,28 @@ std::string hint_of_shares(const Plan& plan) {
       fmt::join(by_number, " : "), fmt::join(by_mass, " : "));
 }
 
-/// Of sizes with a basis, of which the scene's text says none; classes have their own hint.
+/// Of sizes with a basis, of which the scene's text says none; classes have their own hint, and percentiles say
+/// theirs with their law.
 std::string hint_of_basis(const Plan& plan) {
   const SceneSizes& sizes = plan.scene.sizes;
-  const bool has_one = std::visit([](const auto& of) { return requires { of.basis; }; },
-                                  static_cast<const SceneSizes::variant&>(sizes));
+  const bool counts_spheres = std::visit(
+      [](const auto& of) {
+        if constexpr (requires { of.basis; }) return of.basis == Basis::number;
+        return false;
+      },
+      static_cast<const SceneSizes::variant&>(sizes));
   const auto* lognormal = std::get_if<Lognormal>(&sizes);
-  if (!has_one || std::holds_alternative<Classes>(sizes) || (lognormal && lognormal->d43) ||
+  if (!counts_spheres || std::holds_alternative<Classes>(sizes) || (lognormal && lognormal->d43) ||
       sizes.locations.whole.line == 0 || sizes.locations.keys.contains("basis"))
     return {};
   const int dimension = plan.scene.dimension();
   const double by_number = 2 * plan.radii->quantile(0.5);
   const double by_volume = 2 * radius_holding(*plan.radii, 0.5, dimension);
   if (!(by_volume > basis_matters_from * by_number)) return {};
-  const bool volume = std::holds_alternative<Percentiles>(sizes);
   return fmt::format(
-      "no basis is said, and \"{}\" is meant: half of the spheres are below {:.4g} {}, half of their {} below "
-      "{:.4g}; say basis = \"{}\" where the sizes are those of {}",
-      volume ? "volume" : "number", by_number, name_of(plan.scene.unit), dimension == 2 ? "area" : "volume",
-      by_volume, volume ? "number" : "volume", volume ? "counted spheres" : "a balance");
+      "no basis is said, and \"number\" is meant: half of the spheres are below {:.4g} {}, half of their {} "
+      "below {:.4g}; say basis = \"volume\" where the sizes are those of a balance",
+      by_number, name_of(plan.scene.unit), dimension == 2 ? "area" : "volume", by_volume);
 }
 
 std::string hint_of_pan(const Plan& plan) {
@@ -108,7 +111,8 @@ std::string hint_of_pan(const Plan& plan) {
   if (curve.in_pan == 0) return {};
   const double scale = plan.scene.scale;
   return fmt::format(
-      "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; \"pan\" "
+      "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; "
+      "\"pan\" "
       "says how fine they are",
       100 * curve.in_pan, scale * curve.pan, scale * curve.openings[1], name_of(plan.scene.unit));
 }
@@ -120,7 +124,8 @@ std::string hint_of_ends(const Plan& plan) {
                                    given->max.value_or(std::numeric_limits<double>::infinity()));
   const double scale = plan.scene.scale;
   return fmt::format(
-      "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles goes "
+      "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles "
+      "goes "
       "on straight; \"min\" and \"max\" say where",
       scale * curve.front().size, scale * curve.back().size, name_of(plan.scene.unit));
 }
@@ -146,8 +151,8 @@ std::string hint_of_crystal(const Plan& plan) {
 
 std::vector<std::string> hints_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan), hint_of_basis(plan),
-                           hint_of_pan(plan), hint_of_ends(plan), hint_of_crystal(plan)})
+  for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan),
+                           hint_of_basis(plan), hint_of_pan(plan), hint_of_ends(plan), hint_of_crystal(plan)})
     if (!hint.empty()) all.push_back(std::move(hint));
   return all;
 }

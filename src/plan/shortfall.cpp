@@ -152,7 +152,9 @@ std::optional<double> expected_of_sizes(const Packing& packing) {
 }
 
 std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) {
-  if (!packing.expected_of_sizes || !box_of(packing) || any_in_bed(plan.scene)) return {};
+  if (!packing.expected_of_sizes || !box_of(packing) || any_in_bed(plan.scene) ||
+      any_stage(plan.scene, &StageTraits::reaches, Reaches::insertion))  // crystals are what they are
+    return {};
   const double of_sizes = *packing.expected_of_sizes, phi = packing.packing_fraction();
   const double expected = std::min(of_sizes, asked_of(packing, plan));
   const double error = error_of(plan);

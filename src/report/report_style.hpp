@@ -6,7 +6,7 @@ namespace bernal {
 /// The style sheet of report.html, light and dark.
 inline constexpr std::string_view report_style = R"css(
 :root { color-scheme: light dark; --ink:#1d2733; --dim:#5d6b7a; --rule:#dde3e9; --page:#ffffff; --card:#f5f7f9;
-  --first:#2f8ba3; --second:#3a3f8f; --yes:#14804a; --short:#9a6700; --no:#c0322b; }
+  --first:#2f8ba3; --second:#3a3f8f; --yes:#14804a; --short:#b36b00; --no:#c0322b; }
 @media (prefers-color-scheme: dark) { :root { --ink:#e4e9ee; --dim:#94a2b1; --rule:#2c3743; --page:#10161d;
   --card:#18212b; --first:#5cc6c4; --second:#a9a7f0; --yes:#4cc38a; --short:#e3b341; --no:#ff7b72; } }
 * { box-sizing:border-box; }

@@ -20,36 +20,50 @@ constexpr double step = 1.05, known_to = 5e-5;
 constexpr int most_steps_down = 60;
 /// Seeds from which a size is tried before it counts as too large: few spheres take no time, and how they
 /// begin decides where they end.
-int tries_for(std::int64_t count) { return static_cast<int>(std::clamp<std::int64_t>(1600 / count, 2, 32)); }
+int tries_for(std::int64_t count) { return static_cast<int>(std::clamp<std::int64_t>(1600 / count, 4, 32)); }
 
 class Search {
  public:
   Search(const Plan& plan, const RunOptions& options)
-      : plan_(plan), options_(options), tries_(tries_for(*plan.scene.target.count)) {}
+      : plan_(plan), options_(options), many_(tries_for(*plan.scene.target.count)) {}
 
   Packing found() {
+    if (options_.checkpoints.resume && options_.checkpoints.tell)
+      options_.checkpoints.tell("the search for the largest spheres has no checkpoints; it starts anew");
     double scale = plan_.scene.scale;
-    std::optional<double> fitting, too_large;
-    for (int down = 0; !stopped_ && (!fitting || !too_large || *too_large > (1 + known_to) * *fitting);) {
-      tell(fitting, too_large, scale);
-      if (fits(scale)) {
-        fitting = scale;
-      } else {
-        too_large = scale;
-        if (!fitting && ++down > most_steps_down) break;
-      }
-      scale = !fitting ? *too_large / step : !too_large ? *fitting * step : std::sqrt(*fitting * *too_large);
+    for (int down = 0; !fits(scale, few_) && !stopped_; scale /= step) {
+      too_large_ = scale;
+      if (++down > most_steps_down) break;
+    }
+    // As many seeds as it takes only where that decides: just above what few of them place.
+    while (fitting_ && !stopped_) {
+      narrow_down();
+      if (stopped_ || !fits(*fitting_ * (1 + known_to), many_)) break;
+      too_large_.reset();
     }
     if (!best_) return last_ ? std::move(*last_) : run(build(scene_at(scale)), sub_options(0));
     Packing packing = std::move(*best_);
     packing.outcome = stopped_ ? Outcome::cancelled : Outcome::converged;
-    packing.reason = in_words(packing, fitting.value_or(scale), too_large);
+    packing.reason = in_words(packing);
     packing.effects.push_back({"search", runs_, watch_.seconds()});
     packing.seconds = watch_.seconds();
     return packing;
   }
 
  private:
+  /// Steps up until few seeds place no spheres that large, each twice the one before but the largest, and
+  /// halves what is between.
+  void narrow_down() {
+    for (double by = best_is_first_ ? step : 1 + 2 * known_to; !too_large_ && !stopped_;
+         by = std::min(by * by, step)) {
+      const double scale = *fitting_ * by;
+      if (!fits(scale, few_)) too_large_ = scale;
+    }
+    best_is_first_ = false;
+    while (!stopped_ && *too_large_ > (1 + known_to) * *fitting_)
+      if (const double scale = std::sqrt(*fitting_ * *too_large_); !fits(scale, few_)) too_large_ = scale;
+  }
+
   /// The scene of spheres of a size: of one size, that size; else the scale.
   Scene scene_at(double scale) const {
     Scene scene = plan_.scene;
@@ -72,21 +86,23 @@ class Search {
             .engine_folder = options_.engine_folder};
   }
 
-  /// Whether one of the seeds places all spheres; keeps its packing.
-  bool fits(double scale) {
+  /// Whether one of so many seeds places all spheres; keeps its packing.
+  bool fits(double scale, int tries) {
+    tell(scale, tries);
     std::optional<Plan> plan;
     try {
       plan.emplace(build(scene_at(scale)));
     } catch (const Error&) {  // too large for the container by themselves
       return false;
     }
-    for (int n = 0; n < tries_ && !stopped_; ++n) {
+    for (int n = 0; n < tries && !stopped_; ++n) {
       last_ = run(*plan, sub_options(n));
       ++runs_;
       stopped_ = last_->outcome == Outcome::cancelled;
       if (!is_packed(last_->outcome)) continue;
       best_ = std::move(last_);
       last_.reset();
+      fitting_ = scale;
       return true;
     }
     return false;
@@ -101,35 +117,35 @@ class Search {
                : fmt::format("scale {:.6g}", scale);
   }
 
-  std::string in_words(const Packing& packing, double fitting, const std::optional<double>& too_large) const {
+  std::string in_words(const Packing& packing) const {
     const std::size_t n = packing.spheres.size();
     std::string text = fmt::format(
-        "{} of {}, {} {} placed", n == 1 ? "the sphere" : grouped(n) + " spheres", size_in_words(fitting),
+        "{} of {}, {} {} placed", n == 1 ? "the sphere" : grouped(n) + " spheres", size_in_words(*fitting_),
         n == 1 ? "as large as it fits," : "the largest found,", n == 1 ? "is" : "are");
     if (stopped_) return "stopped by the user: " + text + ", and larger ones may fit";
     return text + fmt::format("; at {} none of {} seeds placed all",
-                              size_in_words(too_large.value_or(fitting)), tries_);
+                              size_in_words(*fitting_ * (1 + known_to)), many_);
   }
 
-  void tell(const std::optional<double>& fitting, const std::optional<double>& too_large,
-            double scale) const {
+  void tell(double scale, int tries) const {
     double done = 0;
-    if (fitting && too_large)  // halvings that are done, of those that there are in all
-      done = 0.3 + 0.7 * std::clamp(1 - std::log(std::log(*too_large / *fitting) / known_to) /
-                                            std::log(std::log(step) / known_to),
-                                    0.0, 1.0);
+    if (fitting_ && too_large_)  // halvings that are done, of those that there are in all
+      done = 0.6 * std::clamp(1 - std::log(std::log(*too_large_ / *fitting_) / known_to) /
+                                      std::log(std::log(step) / known_to),
+                              0.0, 1.0);
     options_.monitor.report(
-        {"largest", done,
+        {"largest", tries == many_ ? 0.7 : done,
          fmt::format("{} spheres of {}", grouped(static_cast<std::uint64_t>(*plan_.scene.target.count)),
                      size_in_words(scale))});
   }
 
   const Plan& plan_;
   const RunOptions& options_;
-  const int tries_;
+  const int few_ = 2, many_;
   const Stopwatch watch_;
-  bool stopped_ = false;
+  bool stopped_ = false, best_is_first_ = true;
   std::uint64_t runs_ = 0;
+  std::optional<double> fitting_, too_large_;  // scales
   std::optional<Packing> best_, last_;
 };
 

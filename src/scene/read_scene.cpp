@@ -322,7 +322,7 @@ class Reader {
     if (const auto* word = node.as_string();
         word && std::ranges::find(key.words, word->get()) != key.words.end()) {
       sizes = Constant{std::numeric_limits<double>::infinity()};  // as its member takes it
-      sizes.locations.whole = at(node.source());
+      sizes.locations.whole = sizes.locations.keys["value"] = at(node.source());
       return sizes;
     }
     const Key length = {.name = key.name, .type = Type::length};

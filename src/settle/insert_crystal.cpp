@@ -58,8 +58,8 @@ CrystalSites free_sites(const SpheresInBed& in_bed, const Crystal& crystal, doub
 template <class SitesOf>
 std::optional<CrystalSites> most_sites(const CrystalGround& ground, const CrystalCell& cell, double spacing, double r,
                                 const SitesOf& sites_of) {
-  constexpr double sites_looked_at = 4e6;
-  constexpr std::size_t fewest_ways = 4;
+  constexpr double sites_looked_at = 3e5;
+  constexpr std::size_t fewest_ways = 6;
   const double roundings = ground.frame.scale * ground.frame.resolution;
   std::optional<CrystalSites> most;
   const std::size_t ways = Ways(ground, cell, spacing, r).count();
@@ -117,7 +117,7 @@ double gain_of_crystal(const Insert& options, const SizeDistribution& radii, int
   constexpr double more = 1.001;
   if (!options.is_crystal() || has_walls || dimension < 2 || dimension > 3) return 1;
   const double largest = radii.quantile(1 - 1e-9);
-  return std::max(1.0, more * density_of(options, dimension, largest) / of_equal[dimension]);
+  return more * density_of(options, dimension, largest) / of_equal[dimension];
 }
 
 void complete_insert(Insert& insert, Scene& scene, const schema::Section& section) {

@@ -116,7 +116,8 @@ TEST(Pack, AMeshTakesCountFillRadiusCapAndItsOwnUnit) {
   EXPECT_EQ(report["n"], 50);
   EXPECT_EQ(report["unit"], "mm");
   EXPECT_NEAR(report["container"]["volume"].get<double>(), 25.4 * 25.4 * 12.7, 1e-9);
-  EXPECT_NE(packed.out.find("radius = 1"), std::string::npos) << packed.out;
+  EXPECT_NE(packed.out.find("radius = { distribution = \"constant\", value = 1 }"), std::string::npos)
+      << packed.out;
 
   EXPECT_EQ(bernal_in(folder, "pack " + flags + " --diameter 5 --fill --quiet -o filled").status, 0);
   EXPECT_NE(text_of(folder / "filled/scene.toml").find("fill = true"), std::string::npos);

@@ -224,6 +224,20 @@ TEST(MaterialDensity, IsTheDefaultOfOutputs) {
                  11, "older name");
 }
 
+/// What stands above the surface of a bed is of no matter to how many spheres are below it.
+TEST(HeightOfABed, CountsTheSameUnderAnyLid) {
+  const auto expected = [](double lid) {
+    return build(parse_scene(
+                     fmt::format("unit = \"mm\"\n[container]\nkind = \"mesh\"\nfile = \"{}/tests/golden/"
+                                 "frustum.off\"\nfill_level = {}\n[spheres]\nheight = 3\ndiameter = 0.5\n",
+                                 BERNAL_SOURCE, lid),
+                     "test.toml"))
+        .expected_count;
+  };
+  const double low = expected(3.2);
+  for (const double lid : {4.0, 4.9}) EXPECT_NEAR(expected(lid), low, 0.02 * low);
+}
+
 TEST(Hints, SayHowASceneIsUnderstood) {
   const auto hints = [](const std::string& text) { return explain(build(parse_scene(text, "test.toml"))); };
   const auto has = [](const std::string& text, std::string_view what) {

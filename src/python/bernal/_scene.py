@@ -29,7 +29,8 @@ class Scene:
     container : Container
         `Mesh("part.stl", unit="mm")`, `Cylinder(5, 20)`, `Box([4, 5, 6])`, `Periodic(edge=10)`, …
     diameters, radii : length, which may be text with its unit, or Sizes
-        exactly one of them, so that nobody has to guess: `diameters=2` or `diameters=Lognormal(2, 0.3)`.
+        exactly one of them, so that nobody has to guess: `diameters=2`, `diameters=Lognormal(2, 0.3)` or,
+        with a count, `diameters="largest"`.
     engine : Engine
         another program that places the spheres before the first stage, such as `Lammps(ranks=4)`.
     stages : Stage, or several
