@@ -194,6 +194,7 @@ void for_every_entry(Visit visit) {
         const bool of_bed = of_heap || key.name == "bed" || key.name == "porosity" || key.name == "height" ||
                             key.name == "bed_layers";
         if (key.name == "start_box") return !periodic;
+        if (key.name == "bulk_density") return true;  // becomes a porosity, see amounts_test.cpp
         return periodic ? of_bed : is_open && of_heap;  // no heap fills its container, no bed a period
       });
       visit(schema::spheres_entry(), keys, [&](const std::vector<std::string>& lines) {
