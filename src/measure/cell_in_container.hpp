@@ -18,6 +18,9 @@ class CellInContainer {
   /// no inset.
   CellInContainer(const Domain&, const Container&);
 
+  /// Those in which all of it lies: the flat sides of a solid of revolution reach out of its own.
+  Bounds<3> bounds() const { return container_.bounds(); }
+
   /// Cuts off parts that are certainly outside, if that is cheap, to reduce the work.
   void trim(ConvexCell& cell, const Vector<3>& center) const;
 

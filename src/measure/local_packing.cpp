@@ -83,6 +83,7 @@ std::optional<LocalPacking> local_packing(const Spheres<dynamic>& packed, const 
     if (container->inset() != 0)
       throw Error(ErrorCode::bad_argument, "the domain has an inset; cells are those between its facets");
     within.emplace(local_domain, *container);
+    box.bounds = within->bounds();
     box.trim = [&](const Vector<3>& center, ConvexCell& cell) { within->trim(cell, center); };
   }
 

@@ -80,29 +80,28 @@ std::string hint_of_shares(const Plan& plan) {
       fmt::join(by_number, " : "), fmt::join(by_mass, " : "));
 }
 
-/// Of sizes with a basis, of which the scene's text says none; classes have their own hint.
+/// Of sizes with a basis, of which the scene's text says none; classes have their own hint, and percentiles say
+/// theirs with their law.
 std::string hint_of_basis(const Plan& plan) {
   const SceneSizes& sizes = plan.scene.sizes;
-  const bool has_one = std::visit(
+  const bool counts_spheres = std::visit(
       [](const auto& of) {
-        return requires { of.basis; };
+        if constexpr (requires { of.basis; }) return of.basis == Basis::number;
+        return false;
       },
       static_cast<const SceneSizes::variant&>(sizes));
   const auto* lognormal = std::get_if<Lognormal>(&sizes);
-  if (!has_one || std::holds_alternative<Classes>(sizes) || (lognormal && lognormal->d43) ||
+  if (!counts_spheres || std::holds_alternative<Classes>(sizes) || (lognormal && lognormal->d43) ||
       sizes.locations.whole.line == 0 || sizes.locations.keys.contains("basis"))
     return {};
   const int dimension = plan.scene.dimension();
   const double by_number = 2 * plan.radii->quantile(0.5);
   const double by_volume = 2 * radius_holding(*plan.radii, 0.5, dimension);
   if (!(by_volume > basis_matters_from * by_number)) return {};
-  const bool volume = std::holds_alternative<Percentiles>(sizes);
   return fmt::format(
-      "no basis is said, and \"{}\" is meant: half of the spheres are below {:.4g} {}, half of their {} "
-      "below "
-      "{:.4g}; say basis = \"{}\" where the sizes are those of {}",
-      volume ? "volume" : "number", by_number, name_of(plan.scene.unit), dimension == 2 ? "area" : "volume",
-      by_volume, volume ? "number" : "volume", volume ? "counted spheres" : "a balance");
+      "no basis is said, and \"number\" is meant: half of the spheres are below {:.4g} {}, half of their {} "
+      "below {:.4g}; say basis = \"volume\" where the sizes are those of a balance",
+      by_number, name_of(plan.scene.unit), dimension == 2 ? "area" : "volume", by_volume);
 }
 
 std::string hint_of_pan(const Plan& plan) {
