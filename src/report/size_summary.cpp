@@ -28,9 +28,8 @@ std::vector<SizeSummary::Share> shares_of(const Scene& scene, const SizeDistribu
   double all = 0, mass = 0;
   for (const double r : atoms) {
     const double number = radii.cumulative(r) - radii.cumulative(std::nextafter(r, 0.0));
-    SizeSummary::Share& share = shares.emplace_back(
-        SizeSummary::Share{factor_of(scene) * r, {}, number,
-                           number * std::pow(r, dimension) / radii.moment(dimension), {}});
+    SizeSummary::Share& share = shares.emplace_back(SizeSummary::Share{
+        factor_of(scene) * r, {}, number, number * std::pow(r, dimension) / radii.moment(dimension), {}});
     all += number;
     const auto k = classes ? class_of(*classes, share.size / scene.scale) : std::nullopt;
     if (k && !classes->names.empty()) share.name = classes->names[*k];
@@ -102,8 +101,7 @@ std::string summary_in_words(const SizeSummary& summary, const Scene& scene) {
   }
   if (!summary.fit.empty()) {
     std::vector<std::string> all;
-    for (const SizeSummary::Fit& fit : summary.fit)
-      all.push_back(fit_in_words(fit));
+    for (const SizeSummary::Fit& fit : summary.fit) all.push_back(fit_in_words(fit));
     head = "law";
     line(fmt::format("{} {}, against what was given", fmt::join(all, ", "), basis_of_fit(scene)));
   }

@@ -9,8 +9,8 @@
 
 namespace bernal {
 
-/// What a scene's sizes come to, by number and by volume. Lengths in the scene's unit; a volume is r^D, in two
-/// dimensions an area.
+/// What a scene's sizes come to, by number and by volume. Lengths in the scene's unit; a volume is r^D, in
+/// two dimensions an area.
 struct SizeSummary {
   /// One of few sizes, a radius or a diameter as the scene says, ascending.
   struct Share {

@@ -18,9 +18,10 @@ void refuse_each_in_parts(const SceneSizes& sizes) {
   if (!mixture) return;
   for (const SceneSizes& part : mixture->of) {
     if (each_once(part))
-      throw Error(ErrorCode::bad_scene,
-                  "a list in a mixture is drawn from: say draw = \"resample\" in it, or leave the mixture out",
-                  part.locations.whole);
+      throw Error(
+          ErrorCode::bad_scene,
+          "a list in a mixture is drawn from: say draw = \"resample\" in it, or leave the mixture out",
+          part.locations.whole);
     refuse_each_in_parts(part);
   }
 }
@@ -49,18 +50,21 @@ void complete_list(Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   const Target& target = scene.target;
   const bool box_follows = box && (box->scalable || (box->size.empty() && !box->edge));
-  if (target.fill || target.mass || target.bed.gives_height() || (target.has_packing_fraction() && !box_follows))
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("the list says how many spheres there are, {}, each exactly once: leave \"fill\", "
-                            "\"packing_fraction\" and the height of a bed out of [spheres], {}",
-                            grouped(list->values.size()), or_draw),
-                target.where);
+  if (target.fill || target.mass || target.bed.gives_height() ||
+      (target.has_packing_fraction() && !box_follows))
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("the list says how many spheres there are, {}, each exactly once: leave \"fill\", "
+                    "\"packing_fraction\" and the height of a bed out of [spheres], {}",
+                    grouped(list->values.size()), or_draw),
+        target.where);
   if (scene.draw && *scene.draw == Draw::random)
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("draw = \"random\" in [spheres] would take some sizes of the list twice and others "
-                            "not at all: leave it out, {}",
-                            or_draw),
-                scene.locations.of("draw"));
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("draw = \"random\" in [spheres] would take some sizes of the list twice and others "
+                    "not at all: leave it out, {}",
+                    or_draw),
+        scene.locations.of("draw"));
   scene.draw = Draw::quantiles;  // which deals every size as often as it is there
   if (!scene.start.file) complete_count_of_list(scene, 0);
 }
@@ -71,13 +75,13 @@ void complete_count_of_list(Scene& scene, std::size_t there) {
   std::optional<std::int64_t>& count = scene.target.count;
   const auto all = static_cast<std::int64_t>(there + list->values.size());
   if (count && *count != all)
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("\"count\" in [spheres] says {}, but the list has {} sizes, each exactly once{}: "
-                            "leave it out, {}",
-                            grouped(static_cast<std::uint64_t>(*count)), grouped(list->values.size()),
-                            there > 0 ? fmt::format(", and the start {} spheres", grouped(there)) : "",
-                            or_draw),
-                scene.locations.of("count"));
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("\"count\" in [spheres] says {}, but the list has {} sizes, each exactly once{}: "
+                    "leave it out, {}",
+                    grouped(static_cast<std::uint64_t>(*count)), grouped(list->values.size()),
+                    there > 0 ? fmt::format(", and the start {} spheres", grouped(there)) : "", or_draw),
+        scene.locations.of("count"));
   count = all;
 }
 

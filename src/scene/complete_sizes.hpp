@@ -5,8 +5,8 @@
 
 namespace bernal {
 
-/// Of classes of several materials the density that all spheres have together, where the scene says none: what
-/// a mass is counted by. Throws Error{bad_scene} where it says another.
+/// Of classes of several materials the density that all spheres have together, where the scene says none:
+/// what a mass is counted by. Throws Error{bad_scene} where it says another.
 void complete_density(Scene&);
 
 /// Of a scene whose sizes are a list, each exactly once: that there are as many spheres, and that they are

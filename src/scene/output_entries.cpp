@@ -89,6 +89,7 @@ schema::Entry output_entry(std::string_view name, std::string_view help,
     if (std::ranges::find(everywhere, key.name) != everywhere.end() ||
         std::ranges::find(keys, key.name) != keys.end())
       made.keys.push_back(key);
+  if (made.find("material_density")) made.choices = {{{"material_density"}, {"density"}, {}}};
   return schema::entry<Output>(std::move(made));
 }
 

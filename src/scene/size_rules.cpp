@@ -28,9 +28,10 @@ void passing_rule(const SieveCurve& curve, const Section& section) {
   const auto& [openings, passing, in_pan, pan] = curve;
   for (std::size_t i = 1; i < openings.size(); ++i)
     if (passing[i] < passing[i - 1])
-      section.refuse("passing", fmt::format("must not fall with the size, but {} passes {} and only {} passes "
-                                            "{}; what each sieve retains is \"retained\"",
-                                            passing[i - 1], openings[i - 1], passing[i], openings[i]));
+      section.refuse("passing",
+                     fmt::format("must not fall with the size, but {} passes {} and only {} passes "
+                                 "{}; what each sieve retains is \"retained\"",
+                                 passing[i - 1], openings[i - 1], passing[i], openings[i]));
   if (passing.front() != 0 && pan > 0)
     section.refuse("passing", fmt::format("must be 0 at the size 0, but is {} there", passing.front()));
   if (passing.front() != 0)
@@ -49,9 +50,10 @@ void retained_rule(const Sieve& of, const Section& section) {
   const bool has_pan = of.retained.size() == of.sizes.size() + 1;
   if (!has_pan) one_for_each("retained", of.retained.size(), "sizes", of.sizes.size(), section);
   if (has_pan && std::ranges::find(of.sizes, 0.0) != of.sizes.end())
-    section.refuse("retained", fmt::format("must have one number for each of \"sizes\", which name the pan, 0, "
-                                           "themselves; but there are {} for {}",
-                                           of.retained.size(), of.sizes.size()));
+    section.refuse("retained",
+                   fmt::format("must have one number for each of \"sizes\", which name the pan, 0, "
+                               "themselves; but there are {} for {}",
+                               of.retained.size(), of.sizes.size()));
   if (has_pan && !std::ranges::is_sorted(of.sizes, std::greater{}))
     section.refuse("retained",
                    "has one number more than \"sizes\": it is taken for the pan only where the sizes fall; "
@@ -59,10 +61,11 @@ void retained_rule(const Sieve& of, const Section& section) {
   const auto coarsest = std::ranges::max_element(of.sizes);
   const double on_it = of.retained[static_cast<std::size_t>(coarsest - of.sizes.begin())];
   if (on_it > 0)
-    section.refuse("retained",
-                   fmt::format("must be 0 on the coarsest sieve, but {} lies on {}; add the size that no sphere "
-                               "is above, with 0",
-                               on_it, *coarsest));
+    section.refuse(
+        "retained",
+        fmt::format("must be 0 on the coarsest sieve, but {} lies on {}; add the size that no sphere "
+                    "is above, with 0",
+                    on_it, *coarsest));
   if (std::ranges::max(of.retained) == 0) section.refuse("retained", "must not be 0 everywhere");
 }
 
@@ -99,9 +102,10 @@ void percentiles_rule(const Percentiles& of, const Section& section) {
     ++given;
   }
   if (given < 2)
-    section.fail("", fmt::format("{} needs two percentiles or more, such as d10 and d90; with one of them give "
-                                 "a lognormal distribution its \"median\" and \"sigma\"",
-                                 section.name));
+    section.fail("",
+                 fmt::format("{} needs two percentiles or more, such as d10 and d90; with one of them give "
+                             "a lognormal distribution its \"median\" and \"sigma\"",
+                             section.name));
   const std::vector<Percentile> percentiles = given_percentiles(of);
   if (of.min && of.max && *of.min >= *of.max)
     section.refuse("min", fmt::format("must be below \"max\", but {} is not below {}", *of.min, *of.max));

@@ -46,7 +46,9 @@ std::string remedy_of_number(std::string_view text, std::size_t line) {
   text = text.substr(0, text.find_first_of("\n#"));
   for (std::size_t at = text.find('='); at != std::string_view::npos; at = text.find('=', at + 1)) {
     const std::string_view rest = trimmed(text.substr(at + 1));
-    if (const auto with_point = without_decimal_comma(rest.substr(0, rest.find_first_of("]} \t"))))
+    std::string_view word = rest.substr(0, rest.find_first_of("]} \t"));
+    if (word.ends_with(',')) word.remove_suffix(1);
+    if (const auto with_point = without_decimal_comma(word))
       return fmt::format("; a decimal comma? write a point, {}", *with_point);
     const std::string_view value = trimmed(rest.substr(0, rest.find_first_of(",]}")));
     std::string complaint;

@@ -72,16 +72,15 @@ std::vector<Percentile> curve_through(std::vector<Percentile> curve, double min,
 std::unique_ptr<SizeDistribution> make_from_percentiles(const std::vector<Percentile>& percentiles,
                                                         PercentileLaw law, Basis basis, double min,
                                                         double max) {
-  if (percentiles.size() < 2)
-    throw Error(ErrorCode::bad_argument, "a law needs two percentiles or more");
+  if (percentiles.size() < 2) throw Error(ErrorCode::bad_argument, "a law needs two percentiles or more");
   for (std::size_t i = 0; i < percentiles.size(); ++i) {
     require_positive("a percentile", percentiles[i].size);
     if (!(percentiles[i].share > 0 && percentiles[i].share < 1))
-      throw Error(ErrorCode::bad_argument,
-                  fmt::format("the share below a percentile lies between 0 and 1, not at {}",
-                              percentiles[i].share));
-    if (i > 0 && !(percentiles[i].share > percentiles[i - 1].share &&
-                   percentiles[i].size > percentiles[i - 1].size))
+      throw Error(
+          ErrorCode::bad_argument,
+          fmt::format("the share below a percentile lies between 0 and 1, not at {}", percentiles[i].share));
+    if (i > 0 &&
+        !(percentiles[i].share > percentiles[i - 1].share && percentiles[i].size > percentiles[i - 1].size))
       throw Error(ErrorCode::bad_argument, "percentiles ascend with the shares below them");
   }
   if (law == PercentileLaw::through) {

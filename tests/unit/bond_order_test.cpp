@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bernal/run/run.hpp"
 #include "measure/harmonics.hpp"
 #include "support/measured.hpp"
 #include "support/packings.hpp"

@@ -158,7 +158,7 @@ struct Scene {
   SceneSizes sizes;          ///< left at a Constant of 0 where those of the start are all there are
   bool sizes_are_diameters = false;
   double scale = 1;      ///< the spheres are so many times as large as `sizes` says
-  bool largest = false;  ///< as many times as `Target::count` of them fit: `run` finds out, see `run_largest`
+  bool largest = false;  ///< as many times as `Target::count` of them fit: `run` finds out
   /// Without it quantiles where a stage keeps the sizes in a container, and wherever few spheres carry much
   /// of the volume; else random.
   std::optional<Draw> draw = {};
