@@ -53,7 +53,12 @@ class Reader {
     read_engine(root, scene);
     read_stages(root, scene);
     read_outputs(root, scene);
-    complete(scene);
+    try {
+      complete(scene);
+    } catch (const Error& error) {
+      explain_phi(error);
+      throw;
+    }
     return scene;
   }
 
@@ -203,6 +208,25 @@ class Reader {
     return static_cast<std::size_t>(found - names.begin());
   }
 
+  void note_phi(const toml::node& node, const Key& key) const {
+    if (const auto* text = node.as_string(); text && trimmed(text->get()).ends_with("phi"))
+      in_phi_.emplace_back(at(node.source()).line, fmt::format("{} = {}", key.name, written(node)));
+  }
+
+  /// Throws the error with what was said on the phi scale in its line, where sizes are in no order: there the
+  /// larger number is the finer grain.
+  void explain_phi(const Error& error) const {
+    std::vector<std::string> said;
+    for (const auto& [line, text] : in_phi_)
+      if (line == error.location().line) said.push_back(text);
+    if (said.size() < 2) return;
+    const std::string where = error.location().text(), what = error.what();
+    throw Error(error.code(),
+                fmt::format("{}; the scene says {}: on the phi scale the larger number is the finer grain",
+                            what.substr(where.empty() ? 0 : where.size() + 2), fmt::join(said, ", ")),
+                error.location());
+  }
+
   /// The node as a value, whatever the key accepts. Refuses text that is no number with its unit where one is
   /// meant.
   std::optional<Value> value_of(const toml::node& node, const Key& key, const std::string& where) const {
@@ -211,6 +235,7 @@ class Reader {
       measured.quantity = Quantity::length;
     const bool line = key.type == Type::points;
     try {
+      if (measured.quantity == Quantity::diameter) note_phi(node, key);
       return line || key.type == Type::lines ? lines_in(node, line, measured)
              : key.type == Type::names       ? names_in(node, measured)
                                              : value_in(node, key.type != Type::integer, measured, key.words);
@@ -273,9 +298,9 @@ class Reader {
     const bool is_list = keys.size() == 1;
     try {
       // More points are measurements, not a distribution; and a scene has to hold them.
-      const auto columns = read_columns(
-          beside(at_file, file), {keys, unit_, is_list ? most_listed : 4096,
-                                  is_list ? "take a histogram of them" : "sum them up in fewer"});
+      const auto columns = read_columns(beside(at_file, file),
+                                        {keys, unit_, is_list ? most_listed : 4096,
+                                         is_list ? "take a histogram of them" : "sum them up in fewer"});
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
@@ -361,6 +386,7 @@ class Reader {
   std::string file_;
   Unit unit_ = {};  ///< of the scene, once it is read
   bool sizes_are_diameters_ = false;
+  mutable std::vector<std::pair<int, std::string>> in_phi_;  ///< lines, and what stands there
 };
 
 }  // namespace
