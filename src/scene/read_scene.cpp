@@ -13,6 +13,7 @@
 #include "scene/output_table.hpp"
 #include "scene/read_columns.hpp"
 #include "scene/read_value.hpp"
+#include "scene/said_in_phi.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/scene_of_table.hpp"
 #include "scene/stage_table.hpp"
@@ -56,7 +57,7 @@ class Reader {
     try {
       complete(scene);
     } catch (const Error& error) {
-      explain_phi(error);
+      in_phi_.explain(error);
       throw;
     }
     return scene;
@@ -208,25 +209,6 @@ class Reader {
     return static_cast<std::size_t>(found - names.begin());
   }
 
-  void note_phi(const toml::node& node, const Key& key) const {
-    if (const auto* text = node.as_string(); text && trimmed(text->get()).ends_with("phi"))
-      in_phi_.emplace_back(at(node.source()).line, fmt::format("{} = {}", key.name, written(node)));
-  }
-
-  /// Throws the error with what was said on the phi scale in its line, where sizes are in no order: there the
-  /// larger number is the finer grain.
-  void explain_phi(const Error& error) const {
-    std::vector<std::string> said;
-    for (const auto& [line, text] : in_phi_)
-      if (line == error.location().line) said.push_back(text);
-    if (said.size() < 2) return;
-    const std::string where = error.location().text(), what = error.what();
-    throw Error(error.code(),
-                fmt::format("{}; the scene says {}: on the phi scale the larger number is the finer grain",
-                            what.substr(where.empty() ? 0 : where.size() + 2), fmt::join(said, ", ")),
-                error.location());
-  }
-
   /// The node as a value, whatever the key accepts. Refuses text that is no number with its unit where one is
   /// meant.
   std::optional<Value> value_of(const toml::node& node, const Key& key, const std::string& where) const {
@@ -235,7 +217,7 @@ class Reader {
       measured.quantity = Quantity::length;
     const bool line = key.type == Type::points;
     try {
-      if (measured.quantity == Quantity::diameter) note_phi(node, key);
+      if (measured.quantity == Quantity::diameter) in_phi_.note(node, key.name, at(node.source()).line);
       return line || key.type == Type::lines ? lines_in(node, line, measured)
              : key.type == Type::names       ? names_in(node, measured)
                                              : value_in(node, key.type != Type::integer, measured, key.words);
@@ -386,7 +368,7 @@ class Reader {
   std::string file_;
   Unit unit_ = {};  ///< of the scene, once it is read
   bool sizes_are_diameters_ = false;
-  mutable std::vector<std::pair<int, std::string>> in_phi_;  ///< lines, and what stands there
+  mutable SaidInPhi in_phi_;
 };
 
 }  // namespace
