@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -85,11 +88,45 @@ void sieve_rule(const Sieve& of, const Section& section) {
   if (curve.pan == 0)
     section.refuse("pan", "is the lower end of what is in the pan, but there is none: name it as the size 0");
   if (*of.pan >= curve.openings.at(1))
-    section.refuse("pan", fmt::format("must be below the finest sieve, but {} is not below {}", *of.pan,
-                                      curve.openings[1]));
+    section.refuse(
+        "pan",
+        fmt::format("is a size, which is below the finest sieve, but {} is not below {}; how much is in "
+                    "the pan stands in the list, at the size 0",
+                    *of.pan, curve.openings[1]));
 }
 
+namespace {
+
+/// In phi a larger number is a finer grain.
+void refuse_falling(const Percentiles& of, const Section& section) {
+  std::vector<std::string_view> names;
+  double last = std::numeric_limits<double>::infinity();
+  for (const NamedPercentile& each : named_percentiles) {
+    const auto& size = of.*each.member;
+    if (!size) continue;
+    if (*size >= last) return;
+    last = *size;
+    names.push_back(each.name);
+  }
+  if (names.size() < 2) return;
+  section.fail(
+      names.front(),
+      fmt::format("the percentiles in {} fall from \"{}\" to \"{}\", and each has to be above the one "
+                  "before it; the phi scale runs the other way: what has a share p above it in phi is "
+                  "the percentile 100 - p of the diameter, so that phi 16 is \"d84\"",
+                  section.name, names.front(), names.back()));
+}
+
+std::string_view in_words(PercentileLaw law) {
+  return law == PercentileLaw::normal          ? "normal"
+         : law == PercentileLaw::rosin_rammler ? "Rosin-Rammler"
+                                               : "lognormal";
+}
+
+}  // namespace
+
 void percentiles_rule(const Percentiles& of, const Section& section) {
+  refuse_falling(of, section);
   const NamedPercentile* last = nullptr;
   std::size_t given = 0;
   for (const NamedPercentile& each : named_percentiles) {
@@ -123,6 +160,17 @@ void percentiles_rule(const Percentiles& of, const Section& section) {
     section.fail("law", fmt::format("law = \"rosin_rammler\" in {} needs \"min\", for by number it has fines "
                                     "without end; 1 % of this fit lies below {:.3g}",
                                     section.name, law.size_at(of.law, 0.01)));
+  constexpr double far_off = 1.5;
+  for (const NamedPercentile& each : named_percentiles)
+    if (const auto& size = of.*each.member) {
+      const double fitted = law.size_at(of.law, each.share);
+      if (fitted < far_off * *size && *size < far_off * fitted) continue;
+      section.fail(each.name,
+                   fmt::format("no {} law goes near all percentiles in {}: the best would have {:.3g} "
+                               "as \"{}\" in place of {:.6g}; say law = \"through\" for a curve "
+                               "exactly through them",
+                               in_words(of.law), section.name, fitted, each.name, *size));
+    }
 }
 
 void histogram_rule(const Histogram& of, const Section& section) {
