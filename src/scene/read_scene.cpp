@@ -13,6 +13,7 @@
 #include "scene/output_table.hpp"
 #include "scene/read_columns.hpp"
 #include "scene/read_value.hpp"
+#include "scene/said_in_phi.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/scene_of_table.hpp"
 #include "scene/stage_table.hpp"
@@ -53,7 +54,12 @@ class Reader {
     read_engine(root, scene);
     read_stages(root, scene);
     read_outputs(root, scene);
-    complete(scene);
+    try {
+      complete(scene);
+    } catch (const Error& error) {
+      in_phi_.explain(error);
+      throw;
+    }
     return scene;
   }
 
@@ -211,6 +217,7 @@ class Reader {
       measured.quantity = Quantity::length;
     const bool line = key.type == Type::points;
     try {
+      if (measured.quantity == Quantity::diameter) in_phi_.note(node, key.name, at(node.source()).line);
       return line || key.type == Type::lines ? lines_in(node, line, measured)
              : key.type == Type::names       ? names_in(node, measured)
                                              : value_in(node, key.type != Type::integer, measured, key.words);
@@ -362,6 +369,7 @@ class Reader {
   std::string file_;
   Unit unit_ = {};  ///< of the scene, once it is read
   bool sizes_are_diameters_ = false;
+  mutable SaidInPhi in_phi_;
 };
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -97,26 +96,6 @@ void sieve_rule(const Sieve& of, const Section& section) {
 
 namespace {
 
-/// In phi a larger number is a finer grain.
-void refuse_falling(const Percentiles& of, const Section& section) {
-  std::vector<std::string_view> names;
-  double last = std::numeric_limits<double>::infinity();
-  for (const NamedPercentile& each : named_percentiles) {
-    const auto& size = of.*each.member;
-    if (!size) continue;
-    if (*size >= last) return;
-    last = *size;
-    names.push_back(each.name);
-  }
-  if (names.size() < 2) return;
-  section.fail(
-      names.front(),
-      fmt::format("the percentiles in {} fall from \"{}\" to \"{}\", and each has to be above the one "
-                  "before it; the phi scale runs the other way: what has a share p above it in phi is "
-                  "the percentile 100 - p of the diameter, so that phi 16 is \"d84\"",
-                  section.name, names.front(), names.back()));
-}
-
 std::string_view in_words(PercentileLaw law) {
   return law == PercentileLaw::normal          ? "normal"
          : law == PercentileLaw::rosin_rammler ? "Rosin-Rammler"
@@ -126,7 +105,6 @@ std::string_view in_words(PercentileLaw law) {
 }  // namespace
 
 void percentiles_rule(const Percentiles& of, const Section& section) {
-  refuse_falling(of, section);
   const NamedPercentile* last = nullptr;
   std::size_t given = 0;
   for (const NamedPercentile& each : named_percentiles) {

@@ -212,7 +212,7 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
       {with_spheres("diameter = { distribution = \"percentiles\", d16 = \"0.9 phi\", d50 = \"1.5 phi\", d84 = "
                     "\"2.1 phi\" }"),
        3,
-       {"fall from \"d16\" to \"d84\"", "phi scale runs the other way"}},
+       {"above \"d16\"", "the larger number is the finer grain"}},
       {with_spheres("radius = { distribution = \"sieve\", sizes = [2, 1], retained = [0, 1], passing = [100, 0] }"),
        3,
        {"\"passing\" and \"retained\""}},
