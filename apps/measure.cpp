@@ -120,6 +120,14 @@ void print_contacts(const Packing& packing, const Measurements& measured) {
   }
 }
 
+/// Nearer than a diameter hardly any pair is expected.
+double largest_error(const RadialDistribution& radial) {
+  double largest = 0;
+  for (std::size_t k = 0; k < radial.r.size(); ++k)
+    if (radial.r[k] > radial.mean_diameter) largest = std::max(largest, radial.error[k]);
+  return largest;
+}
+
 void print_radial(const Packing& packing, const std::optional<RadialDistribution>& radial,
                   const std::optional<BedProfile>& bed) {
   if (!radial) {
@@ -132,8 +140,9 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
   const double reach = radial->bin_width * static_cast<double>(radial->g.size()) / radial->mean_diameter;
   if (!radial->share.empty())
     fmt::print(
-        "between walls: by the share of each shell that lies off the walls{}; standard error up to {:.2g}\n",
-        part_of_bed(packing, bed), *std::ranges::max_element(radial->error));
+        "between walls: by the share of each shell that lies off the walls{}; standard error from a diameter on up to "
+               "{:.2g}\n",
+        part_of_bed(packing, bed), largest_error(*radial));
   print_chart(radial->g, 3, 3, fmt::format("{:.3g} diameters", reach));
   for (const auto& peak : radial->peaks)
     fmt::print("peak              {:.2f} at {:.3f} diameters (± {:.2f}, ± {:.3f})\n", peak.g,

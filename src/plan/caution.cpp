@@ -12,6 +12,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
+#include "plan/count_mass.hpp"
 #include "plan/estimate.hpp"
 #include "plan/few_large.hpp"
 #include "plan/fitting.hpp"
@@ -94,12 +95,26 @@ std::string caution_of_size(const Plan& plan) {
   return "no place is known for spheres of these sizes: " + largest_in_words(plan, coat_of(plan.scene));
 }
 
+/// Of a mass that the drawn sizes come nowhere near.
+std::string caution_of_mass(const Plan& plan) {
+  constexpr double near_enough = 0.01;
+  const Target& target = plan.scene.target;
+  if (!target.mass_counted || plan.radii->min() == plan.radii->max()) return {};
+  const double share = share_of_mass(plan);
+  if (std::abs(share - 1) <= near_enough) return {};
+  return fmt::format(
+      "the sizes that are drawn come no nearer to {:.4g} kg than {:.4g} kg, as single spheres are heavy; {}",
+      *target.mass_counted, share * *target.mass_counted,
+      plan.scene.draw == Draw::random ? "say draw = \"quantiles\" or give the sizes a \"max\""
+                                      : "take another seed, or give the sizes a \"max\"");
+}
+
 }  // namespace
 
 std::string caution_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string caution :
-       {caution_of_few(plan), caution_of_target(plan), caution_of_guess(plan), caution_of_size(plan)})
+  for (std::string caution : {caution_of_few(plan), caution_of_target(plan), caution_of_guess(plan),
+                              caution_of_size(plan), caution_of_mass(plan)})
     if (!caution.empty()) all.push_back(std::move(caution));
   return fmt::format("{}", fmt::join(all, "; "));
 }

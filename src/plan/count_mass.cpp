@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
+#include "plan/fitting.hpp"
 #include "plan/room_for_gaps.hpp"
-#include "sizes/volume_carriers.hpp"
+#include "plan/stages.hpp"
 #include "work/supply.hpp"
 
 namespace bernal {
@@ -29,7 +30,7 @@ void count_mass(Plan& plan, const SizeDistribution& radii, double cut) {
                 fmt::format("a \"mass\" of {:g} kg is less than half of the smallest sphere: check the units",
                             *target.mass),
                 plan.scene.locations.of("mass"));
-  if (!plan.scene.draw) plan.scene.draw = usual_draw(radii, wanted / mean, 3);
+  if (!plan.scene.draw) plan.scene.draw = Draw::quantiles;
   auto count = static_cast<std::int64_t>(plan.start.spheres.size());
   double sum = 0, last = 0;
   for (const double r : plan.start.spheres.r) sum += volume_of_drawn(r);
@@ -53,6 +54,24 @@ void count_mass(Plan& plan, const SizeDistribution& radii, double cut) {
   }
   target.count = std::max<std::int64_t>(1, count);
   target.mass_counted = std::exchange(target.mass, std::nullopt);
+}
+
+double share_of_mass(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  const double coat = coat_of(scene);
+  const bool has_no_tail = std::isfinite(plan.radii->max()) || (scene.is_periodic() && !any_in_bed(scene));
+  const double cut =
+      has_no_tail ? plan.radii->max() : tail_cut(scene, plan.domain, *plan.radii, plan.container);
+  double volume = 0;
+  for (const double r : plan.start.spheres.r) volume += ball_volume(3, r - coat);
+  RadiusSequence sequence(*plan.radii, scene.seed, *scene.draw);
+  for (auto n = static_cast<std::int64_t>(plan.start.spheres.size()); n < *scene.target.count;) {
+    const double r = sequence.next();
+    if (r > cut) continue;
+    volume += ball_volume(3, r - coat);
+    ++n;
+  }
+  return volume * std::pow(metres_per(scene.unit), 3) * *scene.material_density / *scene.target.mass_counted;
 }
 
 }  // namespace bernal

@@ -13,6 +13,7 @@
 #include "scene/output_table.hpp"
 #include "scene/read_columns.hpp"
 #include "scene/read_value.hpp"
+#include "scene/said_in_phi.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/scene_of_table.hpp"
 #include "scene/stage_table.hpp"
@@ -53,7 +54,12 @@ class Reader {
     read_engine(root, scene);
     read_stages(root, scene);
     read_outputs(root, scene);
-    complete(scene);
+    try {
+      complete(scene);
+    } catch (const Error& error) {
+      in_phi_.explain(error);
+      throw;
+    }
     return scene;
   }
 
@@ -211,6 +217,7 @@ class Reader {
       measured.quantity = Quantity::length;
     const bool line = key.type == Type::points;
     try {
+      if (measured.quantity == Quantity::diameter) in_phi_.note(node, key.name, at(node.source()).line);
       return line || key.type == Type::lines ? lines_in(node, line, measured)
              : key.type == Type::names       ? names_in(node, measured)
                                              : value_in(node, key.type != Type::integer, measured, key.words);
@@ -286,9 +293,9 @@ class Reader {
     const bool is_list = keys.size() == 1;
     try {
       // More points are measurements, not a distribution; and a scene has to hold them.
-      const auto columns = read_columns(
-          beside(at_file, file), {keys, unit_, is_list ? most_listed : 4096,
-                                  is_list ? "take a histogram of them" : "sum them up in fewer"});
+      const auto columns = read_columns(beside(at_file, file),
+                                        {keys, unit_, is_list ? most_listed : 4096,
+                                         is_list ? "take a histogram of them" : "sum them up in fewer"});
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
@@ -374,6 +381,7 @@ class Reader {
   std::string file_;
   Unit unit_ = {};  ///< of the scene, once it is read
   bool sizes_are_diameters_ = false;
+  mutable SaidInPhi in_phi_;
 };
 
 }  // namespace

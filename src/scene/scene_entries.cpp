@@ -1,6 +1,7 @@
 #include "scene/scene_entries.hpp"
 
 #include "scene/scale_entry.hpp"
+#include "scene/spheres_rules.hpp"
 #include "scene/toml_text.hpp"
 
 #include <algorithm>
@@ -26,10 +27,6 @@ namespace bernal::schema {
 namespace {
 
 std::vector<std::string_view> words(std::span<const std::string_view> of) { return {of.begin(), of.end()}; }
-
-bool is_sha256(const std::string& digest) {
-  return digest.size() == 64 && digest.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
-}
 
 /// A number, or "predicted".
 Member packing_fraction() {
@@ -70,33 +67,14 @@ Member of_start(M Start::*member) {
 
 void spheres_rule(const Scene& scene, const Section& section) {
   scale_rule(scene, section);
-  for (const std::string_view amount : {"mass", "bulk_density"})
-    if (!scene.material_density && (amount == "mass" ? scene.target.mass : scene.target.bulk_density))
-      section.fail(amount,
-                   fmt::format("\"{}\" in [spheres] needs the \"material_density\" of the spheres, in "
-                               "kg/m3, such as 2500 for glass",
-                               amount));
+  amounts_rule(scene, section);
   if (const BedTarget& bed = scene.target.bed; bed.heap_angle && bed.top != BedTarget::Top::heap)
     section.fail("heap_angle",
                  "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
   // The one that is read last is all that the scene still holds.
   if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
     section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
-  const auto& [file, unit, box, sha256, packing] = scene.start;
-  const auto* periodic = std::get_if<PeriodicBox>(&scene.container);
-  if (!file && (unit || !box.empty() || !sha256.empty()))
-    section.fail(unit           ? "start_unit"
-                 : !box.empty() ? "start_box"
-                                : "start_sha256",
-                 "what is said of a start needs the \"start\" itself, the file of its spheres");
-  if (!box.empty() && !periodic) section.refuse("start_box", "is for periodic boxes; leave it out");
-  if (!box.empty() && static_cast<int>(box.size()) != periodic->dimension)
-    section.refuse("start_box", fmt::format("must have a length for each of {} dimensions, but it has {}",
-                                            periodic->dimension, box.size()));
-  if (sha256.size() > 1) section.refuse("start_sha256", "must be one");
-  for (const std::string& digest : sha256)
-    if (!is_sha256(digest))
-      section.refuse("start_sha256", "must have 64 hexadecimal digits, as sha256sum prints them");
+  start_rule(scene, section);
 }
 
 void box_rule(const Box& box, const Section& section) {

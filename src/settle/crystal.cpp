@@ -63,11 +63,16 @@ void refuse_periods(Layout layout, const CrystalGround& ground, const CrystalCel
                   fmt::join(nearest, ", ")));
 }
 
-Planes::Planes(const std::vector<double>& fractions, double from, double edge, int count, double period)
+Planes::Planes(const std::vector<double>& fractions, double from, double edge, int count, double period,
+               double origin, double scale)
     : period_(period) {
   for (const double fraction : fractions) {
+    std::vector<double>& local = local_.emplace_back();
     std::vector<double>& at = at_.emplace_back();
-    for (int k = 0; k < count; ++k) at.push_back(from + (k + fraction) * edge);
+    for (int k = 0; k < count; ++k) {
+      local.push_back((from + (k + fraction) * edge - origin) / scale);
+      at.push_back(origin + scale * local.back());
+    }
   }
 }
 
@@ -150,18 +155,20 @@ Crystal Ways::crystal(std::size_t way) const {
   Crystal laid{cell_, fractions_, {}};
   for (int k = 0; k < 3; ++k) {
     const auto at = static_cast<std::size_t>(k);
+    const double origin = ground_.frame.origin[k], scale = ground_.frame.scale;
     if (k >= ground_.dimension) {
-      laid.planes.emplace_back(fractions_[at], shift[at], 0.0, 1, 0.0);
+      laid.planes.emplace_back(fractions_[at], shift[at], 0.0, 1, 0.0, origin, scale);
     } else if (ground_.boundary.repeats(k)) {
       const double period = ground_.period(k);
       const int cells = std::max(1, static_cast<int>(std::lround(period / edges_[k])));
-      laid.planes.emplace_back(fractions_[at], shift[at], period / cells, cells, period);
+      laid.planes.emplace_back(fractions_[at], shift[at], period / cells, cells, period, origin,
+                               scale);
     } else {
       const double before =
           std::max(0.0, std::ceil((shift[at] - room_.lower[k]) / edges_[k] - roundings_of_periods));
       const double after = std::max(0.0, std::floor((room_.upper[k] - shift[at]) / edges_[k])) + 2;
       laid.planes.emplace_back(fractions_[at], shift[at] - before * edges_[k], edges_[k],
-                               static_cast<int>(before + after), 0.0);
+                               static_cast<int>(before + after), 0.0, origin, scale);
     }
   }
   return laid;

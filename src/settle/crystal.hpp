@@ -42,22 +42,25 @@ inline constexpr double roundings_of_periods = 1e-9;
 [[noreturn]] void refuse_periods(Layout layout, const CrystalGround& ground, const CrystalCell& cell,
                                  double spacing);
 
-/// The planes of sites across an axis, in the scene's coordinates: of those at each fraction of a cell the
-/// coordinate in every cell. Sites have their coordinates from here, so that the distances between all of them
-/// follow from a few.
+/// The planes of sites across an axis: of those at each fraction of a cell the coordinate in every cell, the
+/// packer's and what becomes of that in the scene, to the bit. Sites have their coordinates from here, so that
+/// the distances between all of them follow from a few.
 class Planes {
  public:
-  /// `count` cells of that edge, the first of them at `from`; all of them make up `period`, unless it is 0.
-  Planes(const std::vector<double>& fractions, double from, double edge, int count, double period);
+  /// `count` cells of that edge, the first of them at `from`, in the scene's unit; all of them make up `period`,
+  /// unless it is 0.
+  Planes(const std::vector<double>& fractions, double from, double edge, int count, double period,
+         double origin, double scale);
 
   std::size_t cells() const { return at_.front().size(); }
-  double at(std::size_t fraction, std::size_t cell) const { return at_[fraction][cell]; }
+  /// The packer's.
+  double at(std::size_t fraction, std::size_t cell) const { return local_[fraction][cell]; }
   /// The least distance along the axis of a plane at one fraction from one at another, so many cells on.
   /// Infinite if there are none. Differences of doubles are exact here, or nearly.
   long double least_gap(std::size_t fraction, std::size_t other, int cells_on) const;
 
  private:
-  std::vector<std::vector<double>> at_;
+  std::vector<std::vector<double>> local_, at_;  // at_ in the scene
   double period_;
 };
 
@@ -70,7 +73,7 @@ struct Crystal {
   /// Whether no two sites, in whatever images, are nearer than `distance`: certainly, if it says so.
   bool keeps(double distance) const;
 
-  /// Calls visit(place) for every site, in the scene's coordinates. Throws Cancelled.
+  /// Calls visit(place) for every site, in the packer's coordinates. Throws Cancelled.
   template <class Visit>
   void for_each_site(const Monitor& monitor, const Visit& visit) const {
     for (std::size_t k = 0; k < planes[2].cells(); ++k)

@@ -37,12 +37,10 @@ CrystalGround ground_of(const SpheresInBox& in_box) {
 /// The sites that have room for a sphere of that radius, in the scene's unit, in the packer's coordinates.
 CrystalSites free_sites(const SpheresInBed& in_bed, const Crystal& crystal, double r, const Monitor& monitor) {
   const Bed& bed = in_bed.bed();
-  const Frame& frame = in_bed.task.frame;
-  const double own = r / frame.scale;
+  const double own = r / in_bed.task.frame.scale;
   CrystalSites free;
-  crystal.for_each_site(monitor, [&](const Vector<3>& site) {
-    const Vector<3> place = frame.to_local(site);
-    if (frame.to_scene(place) != site || !bed.fits_between_spheres(place, own)) return;
+  crystal.for_each_site(monitor, [&](const Vector<3>& place) {
+    if (!bed.fits_between_spheres(place, own)) return;
     if (!bed.container().contains(place, own + bed.skin())) {
       if (bed.container().clearance_within(place, 2 * own) < own - bed.skin()) return;
       const auto exact = in_bed.task.exact_place(place, own);
@@ -166,8 +164,7 @@ StageEnd insert_crystal_in_box(const Insert& options, SpheresInBox& in_box, Repo
   const double scale = ground.frame.scale, r = scale * in_box.supply->largest();
   const CrystalSites sites = sites_asked(options, ground, r, [&](const Crystal& crystal) {
     CrystalSites all;
-    crystal.for_each_site(report.monitor,
-                          [&](const Vector<3>& site) { all.push_back(ground.frame.to_local(site)); });
+    crystal.for_each_site(report.monitor, [&](const Vector<3>& site) { all.push_back(site); });
     return all;
   });
   const std::size_t wanted = in_box.spheres.size(), n = std::min(wanted, sites.size());

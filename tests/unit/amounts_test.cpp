@@ -89,6 +89,16 @@ TEST(Lengths, OfGrainsMayBeOfThePhiScale) {
       8, "\"sd\"");
 }
 
+TEST(Lengths, OfThePhiScaleRunTheOtherWay) {
+  expect_refused(
+      vessel +
+          "[spheres]\ndiameter = { distribution = \"percentiles\", d16 = \"0.9 phi\", d50 = "
+          "\"1.5 phi\", d84 = \"2.1 phi\" }\n",
+      7,
+      "the scene says d16 = \"0.9 phi\", d50 = \"1.5 phi\", d84 = \"2.1 phi\": on the phi scale the "
+      "larger number is the finer grain");
+}
+
 TEST(Lengths, AreRefusedInOneLineWithTheRemedy) {
   const std::string spheres = vessel + "[spheres]\ncount = 9\n";
   expect_refused(spheres + "diameter = \"25,4 mm\"\n", 8,
@@ -147,6 +157,24 @@ TEST(Mass, IsMetWithinOneSphere) {
       EXPECT_NEAR(mass_of_spheres(packing), 0.02, ball_volume(3, largest) * 1e-9 * 2500) << spheres;
       EXPECT_NEAR(*mass_of(packing, packing.packing_fraction()), mass_of_spheres(packing), 1e-12);
     }
+}
+
+/// One sphere of the tail weighs more than all others.
+TEST(Mass, ThatDrawnSizesDoNotMeetIsACaution) {
+  const std::string wide =
+      "mass = \"20 g\"\nmaterial_density = 2500\ndiameter = { distribution = \"lognormal\", "
+      "median = 2, sigma = 0.8 }\n";
+  const std::string large = "unit = \"mm\"\n[container]\nkind = \"box\"\nsize = [150, 150, 150]\n";
+  const Plan plan = build(scene_of(large, wide + "draw = \"random\""));
+  EXPECT_NE(plan.caution.find("no nearer to 0.02 kg than 0.01552 kg"), std::string::npos) << plan.caution;
+  EXPECT_NE(plan.caution.find("draw = \"quantiles\""), std::string::npos) << plan.caution;
+  EXPECT_EQ(build(scene_of(vessel,
+                           "mass = \"20 g\"\nmaterial_density = 2500\ndiameter = { distribution = "
+                           "\"uniform\", min = 2, max = 3 }"))
+                .caution,
+            "");
+  EXPECT_EQ(build(scene_of("unit = \"mm\"\n[container]\nkind = \"periodic\"\n", wide)).scene.draw,
+            Draw::quantiles);
 }
 
 TEST(Mass, GivesTheSizeOfAPeriodicBox) {
