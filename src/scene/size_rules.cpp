@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -139,16 +140,25 @@ void percentiles_rule(const Percentiles& of, const Section& section) {
                                     "without end; 1 % of this fit lies below {:.3g}",
                                     section.name, law.size_at(of.law, 0.01)));
   constexpr double far_off = 1.5;
+  const NamedPercentile* worst = nullptr;
+  double most = far_off, in_its_place = 0;
   for (const NamedPercentile& each : named_percentiles)
     if (const auto& size = of.*each.member) {
       const double fitted = law.size_at(of.law, each.share);
-      if (fitted < far_off * *size && *size < far_off * fitted) continue;
-      section.fail(each.name,
-                   fmt::format("no {} law goes near all percentiles in {}: the best would have {:.3g} "
-                               "as \"{}\" in place of {:.6g}; say law = \"through\" for a curve "
-                               "exactly through them",
-                               in_words(of.law), section.name, fitted, each.name, *size));
+      const double times =
+          fitted > 0 ? std::max(fitted / *size, *size / fitted) : std::numeric_limits<double>::infinity();
+      if (times <= most) continue;
+      worst = &each;
+      most = times;
+      in_its_place = fitted;
     }
+  if (worst)
+    section.fail(
+        worst->name,
+        fmt::format("no {} law goes near all percentiles in {}: the best would have {:.3g} "
+                    "as \"{}\" in place of {:.6g}; say law = \"through\" for a curve "
+                    "exactly through them",
+                    in_words(of.law), section.name, in_its_place, worst->name, *(of.*worst->member)));
 }
 
 void histogram_rule(const Histogram& of, const Section& section) {

@@ -35,7 +35,7 @@ std::string sample(const Key& key, int choice) {
   if (key.name == "retained") return "[25.5, 0, 30]";
   if (key.name == "edges") return "[0.3, 1, 2, 1e3]";
   if (key.type == Type::length && key.is_diameter && key.name != "d43" && key.name != "d32")
-    return std::string(key.name.substr(1));  // D10 = 10, and so on: they ascend
+    return fmt::format("10.{:0>2}", key.name.substr(1));  // D10 = 10.10, and so on: they ascend, near any law
   switch (key.type) {
     case Type::flag:
       return "true";
