@@ -14,18 +14,24 @@
 namespace bernal {
 namespace {
 
-/// How much larger the spheres of the next run are, until one fails; and to what the largest are known.
-constexpr double step = 1.05, known_to = 5e-5;
+/// How much larger the spheres of the next run are, until one fails; and to what the largest that the stages
+/// place are known: well below the gaps of up to 1e-4 that relaxation leaves.
+constexpr double step = 1.05, known_to = 2e-5;
 /// Steps down to sizes that can be placed, at most.
 constexpr int most_steps_down = 60;
 /// Seeds from which a size is tried before it counts as too large: few spheres take no time, and how they
-/// begin decides where they end.
-int tries_for(std::int64_t count) { return static_cast<int>(std::clamp<std::int64_t>(1600 / count, 4, 32)); }
+/// begin decides where they end, but of very few there are hardly any ways to end.
+int tries_for(std::int64_t count) {
+  return static_cast<int>(std::clamp<std::int64_t>(std::min(4 * count, 1600 / count), 4, 32));
+}
 
 class Search {
  public:
   Search(const Plan& plan, const RunOptions& options)
-      : plan_(plan), options_(options), many_(tries_for(*plan.scene.target.count)) {}
+      : plan_(plan),
+        options_(options),
+        many_(tries_for(*plan.scene.target.count)),
+        few_(std::clamp(many_ / 4, 2, 8)) {}
 
   Packing found() {
     if (options_.checkpoints.resume && options_.checkpoints.tell)
@@ -96,13 +102,16 @@ class Search {
       return false;
     }
     for (int n = 0; n < tries && !stopped_; ++n) {
-      last_ = run(*plan, sub_options(n));
+      // First the one that placed the largest so far: it is likely to place larger ones.
+      const int seed = n == 0 ? winner_ : n <= winner_ ? n - 1 : n;
+      last_ = run(*plan, sub_options(seed));
       ++runs_;
       stopped_ = last_->outcome == Outcome::cancelled;
       if (!is_packed(last_->outcome)) continue;
       best_ = std::move(last_);
       last_.reset();
       fitting_ = scale;
+      winner_ = seed;
       return true;
     }
     return false;
@@ -135,16 +144,21 @@ class Search {
                               0.0, 1.0);
     options_.monitor.report(
         {"largest", tries == many_ ? 0.7 : done,
-         fmt::format("{} spheres of {}", grouped(static_cast<std::uint64_t>(*plan_.scene.target.count)),
-                     size_in_words(scale))});
+         in_dimension(plan_.scene.dimension(),
+                      *plan_.scene.target.count == 1
+                          ? "1 sphere of " + size_in_words(scale)
+                          : fmt::format("{} spheres of {}",
+                                        grouped(static_cast<std::uint64_t>(*plan_.scene.target.count)),
+                                        size_in_words(scale)))});
   }
 
   const Plan& plan_;
   const RunOptions& options_;
-  const int few_ = 2, many_;
+  const int many_, few_;  // seeds
   const Stopwatch watch_;
   bool stopped_ = false, best_is_first_ = true;
   std::uint64_t runs_ = 0;
+  int winner_ = 0;
   std::optional<double> fitting_, too_large_;  // scales
   std::optional<Packing> best_, last_;
 };

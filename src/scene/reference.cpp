@@ -49,15 +49,17 @@ std::string chosen_by(const SharedKey& shared) {
                      names.size() > told ? fmt::format(" or {} more", names.size() - told) : "");
 }
 
+std::string table_in_scene(const std::string& group) {
+  if (group == "diameter") return "diameter or radius = { … }";
+  return group == "stage" || group == "output" ? "[[" + group + "]]" : "[" + group + "]";
+}
+
 /// Where a key stands in a scene: "in [container] with kind = "mesh"".
 std::string place_in_scene(const SharedKey& shared) {
   const std::string& group = shared.group->name;
   if (shared.group->selector.empty())
     return shared.of.front()->name == group ? "at the top" : fmt::format("in [{}]", shared.of.front()->name);
-  const std::string table = group == "diameter"                     ? "diameter or radius = { … }"
-                            : group == "stage" || group == "output" ? "[[" + group + "]]"
-                                                                    : "[" + group + "]";
-  return fmt::format("in {} with {}", table, chosen_by(shared));
+  return fmt::format("in {} with {}", table_in_scene(group), chosen_by(shared));
 }
 
 /// "alpha = 17" or "phi0", what it is, and what it must be.
@@ -68,6 +70,22 @@ std::string line_of(const ReferenceKey& key, const std::string& place = {}) {
   return fmt::format("  {}{}{}{}{}\n      {}\n      {}\n", key.name,
                      key.otherwise ? " = " + *key.otherwise : std::string(), where, place.empty() ? "" : "; ",
                      place, key.help, key.expectation);
+}
+
+/// What of a group is chosen by a word, such as a container, where its name or help speaks of the words:
+/// "kind = "cone"; in [container]".
+std::string kinds_about(const std::vector<ReferenceGroup>& groups, std::string_view words) {
+  constexpr int most = 6;  // of words that so many speak of, nobody means one
+  std::string text;
+  int found = 0;
+  for (const ReferenceGroup& group : groups)
+    for (const ReferenceTable& table : group.tables)
+      if (!group.selector.empty() && relevance(words, table.name, table.help) > 0) {
+        ++found;
+        text += fmt::format("  {} = {}; in {}\n      {}; bernal keys {} has its keys\n", group.selector,
+                            toml_string(table.name), table_in_scene(group.name), table.help, table.name);
+      }
+  return found > most ? std::string() : text;
 }
 
 }  // namespace
@@ -122,7 +140,7 @@ std::string keys_about(std::string_view words) {
         found.emplace_back(match, std::move(shared));
     }
   std::ranges::stable_sort(found, std::greater(), &std::pair<double, SharedKey>::first);
-  std::string text;
+  std::string text = kinds_about(groups, words);
   for (std::size_t i = 0; i < std::min(most, found.size()); ++i)
     text += line_of(found[i].second.key, place_in_scene(found[i].second));
   if (found.size() > most) text += fmt::format("  and {} more; give more words\n", found.size() - most);

@@ -39,7 +39,12 @@ constexpr std::pair<std::string_view, std::string_view> other_words[] = {
     {"gradation gradings screen", "sieve passing"},
     {"continue restart initial", "start"},
     {"iterations limit time", "sweeps rounds patience"},
-    {"wall border", "walls wall_gap"}};
+    {"wall border", "walls wall_gap"},
+    {"ring annular", "annulus"},
+    {"silo jar bottle bucket tank bin", "vessel file"},
+    {"fillet bevel chamfer", "rounding"},
+    {"frustum funnel", "frustum cone hopper"},
+    {"layer compartment gradient", "zone place"}};
 
 bool is_of_word(char c) {
   return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80;

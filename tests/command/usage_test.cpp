@@ -93,6 +93,12 @@ TEST(Usage, KeysFindsByWords) {
     EXPECT_NE(found.out.find(std::string("\n  ") + key), std::string::npos) << words << "\n" << found.out;
     EXPECT_NE(found.out.find("; in "), std::string::npos) << found.out;  // where it stands
   }
+  // What is chosen by a word, too: shapes as people call them.
+  for (const auto& [words, kind] :
+       {std::pair{"frustum", "cone"}, {"annulus", "tube"}, {"hopper", "revolved"}})
+    EXPECT_NE(bernal({"keys", words}).out.find(std::string("  kind = \"") + kind + "\"; in [container]"),
+              std::string::npos)
+        << words;
   // As one word or as several; an exact name of a table is that table.
   EXPECT_EQ(bernal({"keys", "top", "of", "bed"}).out, bernal({"keys", "top of bed"}).out);
   EXPECT_TRUE(bernal({"keys", "mesh"}).out.starts_with("mesh: "));
