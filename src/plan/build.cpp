@@ -103,6 +103,8 @@ void expect_in_container(Plan& plan) {
   const bool exact = scene.walls == WallArithmetic::exact;
   std::shared_ptr<const Container> made = plan.container;
   if (is_faceted(container) && !made) made = container_of(plan);  // what fits into it is asked of it
+  // Far from the origin nothing can be told apart, and then nothing fits.
+  if (std::holds_alternative<Revolved>(container)) frame_for(scene, container, *plan.radii);
   require_fitting(scene, container, made, plan.radii->min());
   const bool has_limit = std::visit(
       [](const auto& kind) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <utility>
 #include <vector>
@@ -84,10 +85,30 @@ void pin_files(const Scene& scene, MeshFile& mesh) {
   mesh.sha256 = std::move(digests);
 }
 
-/// A prism has flat faces, so its triangles are the prism itself, but for the rounding of corners by `base`.
+/// The corners of a prism, each coordinate the sum of two doubles, exactly (Knuth's sum).
+struct SummedCorners {
+  ExactCorners exact;
+  bool all_are_doubles = true;
+
+  void add(const Vector<3>& a, const Vector<3>& b) {
+    const Vector<3> high = a + b;
+    Vector<3> low;
+    for (int k = 0; k < 3; ++k) {
+      const double of_b = high[k] - a[k];
+      low[k] = (a[k] - (high[k] - of_b)) + (b[k] - of_b);
+    }
+    all_are_doubles = all_are_doubles && low.isZero(0);
+    exact.high.push_back(high);
+    exact.low.push_back(low);
+  }
+};
+
+/// A prism has flat faces, so its triangles are the prism itself; where `base` makes corners that are no
+/// doubles they are kept exactly for the certificate.
 Mesh prism_of(const Extruded& extruded) {
   require_simple(extruded.polygon);
   Mesh prism;
+  SummedCorners corners_of_prism;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& loop : extruded.polygon.loops) {
     std::vector<Vector<2>> corners;
@@ -98,7 +119,9 @@ Mesh prism_of(const Extruded& extruded) {
     const auto n = static_cast<std::uint32_t>(corners.size());
     for (std::uint32_t k = 0; k < n; ++k) {
       edges.emplace_back(first + k, first + (k + 1) % n);
-      prism.vertices.push_back(extruded.base + Vector<3>(corners[k][0], corners[k][1], 0));
+      const Vector<3> corner(corners[k][0], corners[k][1], 0);
+      prism.vertices.push_back(extruded.base + corner);
+      corners_of_prism.add(extruded.base, corner);
     }
   }
   const auto below = static_cast<std::uint32_t>(prism.vertices.size());
@@ -107,8 +130,17 @@ Mesh prism_of(const Extruded& extruded) {
     throw Error(ErrorCode::bad_argument,
                 "the corners of the polygon are so close that rounding makes its edges cross; move it nearer "
                 "to the origin");
-  for (std::uint32_t k = 0; k < below; ++k)
+  for (std::uint32_t k = 0; k < below; ++k) {
     prism.vertices.push_back(prism.vertices[k] + extruded.height * Vector<3>::UnitZ());
+    corners_of_prism.exact.high.push_back(prism.vertices.back());
+    corners_of_prism.exact.low.push_back(corners_of_prism.exact.low[k]);
+  }
+  SummedCorners top;
+  top.add(extruded.base, extruded.height * Vector<3>::UnitZ());
+  for (std::size_t k = below; k < prism.vertices.size(); ++k)
+    corners_of_prism.exact.low[k][2] = top.exact.low.front()[2];
+  if (!corners_of_prism.all_are_doubles || !top.all_are_doubles)
+    prism.exact = std::make_shared<ExactCorners>(std::move(corners_of_prism.exact));
   prism.triangles = *floor;
   std::set<std::pair<std::uint32_t, std::uint32_t>> of_floor;
   for (const auto& [a, b, c] : *floor) {

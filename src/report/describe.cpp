@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "report/describe.hpp"
+#include "scene/scene_entries.hpp"
 
 namespace bernal {
 namespace {
@@ -16,8 +17,9 @@ namespace {
 std::string describe_container(const Plan& plan) {
   const std::string_view unit = name_of(plan.scene.unit);
   const Vector<dynamic> size = bounds_of<dynamic>(plan.domain).size();
-  std::string text(is_periodic(plan.domain) && has_walls(plan.domain) ? name_of(plan.domain)
-                                                                      : std::string(kind_of(plan.domain)));
+  std::string text(is_periodic(plan.domain) && has_walls(plan.domain)
+                       ? name_of(plan.domain)
+                       : std::string(schema::word_of(plan.scene.container, plan.domain)));
   if (const auto* mesh = std::get_if<MeshFile>(&plan.scene.container))
     text += fmt::format(" {}", plain_text(mesh->file.string()));
   if (plan.box_follows) text += ", as large as the packing needs";

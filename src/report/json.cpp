@@ -8,6 +8,7 @@
 #include "files/seal.hpp"
 #include "report/measured_json.hpp"
 #include "report/report.hpp"
+#include "scene/scene_entries.hpp"
 
 namespace bernal {
 
@@ -141,6 +142,8 @@ void add_proof(Json& json, const AnyReport& report) {
   json["made_from"] = report.made_from;
   for (const auto& [name, sha256] : report.files)
     json["files"][name] = sha256.empty() ? Json() : Json(sha256);
+  if (json.contains("container"))
+    json["container"]["kind"] = schema::word_of(packing.scene.container, packing.domain);
   if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
     json["container"].update({{"file", mesh->file.filename().string()}, {"sha256", mesh->sha256}});
 }

@@ -5,12 +5,13 @@
 #include "bernal/scene/read_scene.hpp"
 #include "report/describe.hpp"
 #include "report/size_summary.hpp"
+#include "scene/scene_entries.hpp"
 
 namespace bernal {
 
 std::string plan_as_json(const Plan& plan) {
   using nlohmann::ordered_json;
-  ordered_json container = {{"kind", kind_of(plan.domain)}, {"volume", volume_of(plan.domain)}};
+  ordered_json container = {{"kind", schema::word_of(plan.scene.container, plan.domain)}, {"volume", volume_of(plan.domain)}};
   if (!plan.scene.is_periodic()) {
     const Bounds<3> bounds = bounds_of(plan.domain);
     container["bounds"] = {bounds.lower, bounds.upper};

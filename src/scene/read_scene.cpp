@@ -227,11 +227,24 @@ class Reader {
     }
   }
 
+  /// Names the first element of a line of points that is none.
+  void refuse_point(const toml::node& node, const Key& key, const std::string& where) const {
+    const toml::array* line = node.as_array();
+    if (!line) return;
+    for (std::size_t k = 0; k < line->size(); ++k) {
+      const toml::array* point = line->get(k)->as_array();
+      if (point && point->size() == 2) continue;
+      fail(line->get(k)->source(), "point {} of \"{}\" in {} must be two numbers {}, not {}", k + 1, key.name,
+           where, key.name == "profile" ? "[r, z]" : "[x, y]", written(*line->get(k)));
+    }
+  }
+
   Value read_value(const toml::node& node, const Key& key, const std::string& where) const {
     if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
     if (key.type == Type::parts) return read_parts(node, key, where);
     const std::optional<Value> value = value_of(node, key, where);
     if (value && schema::accepts(key, *value)) return *value;
+    if (key.type == Type::points) refuse_point(node, key, where);
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
            remedy(std::get<std::string>(*value), key.words));
@@ -280,9 +293,11 @@ class Reader {
     const bool is_list = keys.size() == 1;
     try {
       // More points are measurements, not a distribution; and a scene has to hold them.
-      const auto columns = read_columns(beside(at_file, file),
-                                        {keys, unit_, is_list ? most_listed : 4096,
-                                         is_list ? "take a histogram of them" : "sum them up in fewer"});
+      WantedColumns wanted{keys, unit_, is_list ? most_listed : 4096,
+                           is_list ? "take a histogram of them" : "sum them up in fewer",
+                           entry.find("retained")};
+      const auto columns = read_columns(beside(at_file, file), wanted);
+      keys = wanted.keys;
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
@@ -300,9 +315,9 @@ class Reader {
     const Location at_file = locations.of("file");
     try {
       // So many, which the scene of a result holds, can be read there again.
-      const auto columns =
-          read_columns(beside(at_file, file),
-                       {{&x, &y}, unit_, 20'000, "leave out corners that are finer than the discs can feel"});
+      WantedColumns wanted{{&x, &y}, unit_, 20'000,
+                           "leave out corners that are finer than discs or spheres can feel"};
+      const auto columns = read_columns(beside(at_file, file), wanted);
       Polygon polygon{{{}}};
       for (std::size_t k = 0; k < columns[0].size(); ++k)
         polygon.loops.front().emplace_back(columns[0][k], columns[1][k]);

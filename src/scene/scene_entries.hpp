@@ -33,6 +33,13 @@ std::string instead_of(const Entry& sizes, std::string_view key,
 inline const Entry& entry_of(const SceneContainer& container) {
   return container_entries()[container.index()];
 }
+/// What to call a container: a shape that is no Domain of its own by the scene's word.
+inline std::string_view word_of(const SceneContainer& container, const Domain& domain) {
+  const bool is_shape = std::holds_alternative<Cone>(container) || std::holds_alternative<Tube>(container) ||
+                        std::holds_alternative<Lathed>(container) ||
+                        std::holds_alternative<Extruded>(container);
+  return is_shape ? entry_of(container).name : kind_of(domain);
+}
 inline const Entry& entry_of(const SceneSizes& sizes) { return size_entries()[sizes.index()]; }
 inline const Entry& entry_of(const SceneEngine& engine) { return engine_entries()[engine.index()]; }
 

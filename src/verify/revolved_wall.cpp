@@ -150,28 +150,33 @@ WallState RevolvedWall::wall_state_of(const Ball<3>& ball, const CertifyOptions&
   // The unit axis and w are off by a few roundoffs, and so are the products.
   const double rounding = 64 * tolerance::roundoff * (w.lpNorm<1>() + extent_);
   const Box<2> around = widened(box_of_ball<2>(place, rounding), 0);
+  const double distance_to_nearest = distance_from_nearest(place, around, ball.r);
   bool clear = true;
-  double distance = Box<2>::infinity;
-  const Box<2> near = widened(around, rounded_up(ball.r + wall_distances_known_up_to(options)));
-  edges_.for_each_touching(near, [&](const Edge& edge) {
+  // At least the nearest edge is decided, so that the gap of every ball is known.
+  const double looked = std::max(ball.r + wall_distances_known_up_to(options), distance_to_nearest);
+  edges_.for_each_touching(widened(around, rounded_up(looked)), [&](const Edge& edge) {
     ++tally.walls;
     clear &= decide(arithmetic, tally.decisions, [&]<class Number>() {
                return ball_clears_swept_edge<Number>(ball.c, reach, solid_, edge.a, edge.b);
              }) == Truth::yes;
-    distance = std::min(distance, distance_from_segment(place, edge.a, edge.b));
   });
 
   const bool inside = center_inside(ball, around, arithmetic, tally);
-  if (!inside) {
-    distance = Box<2>::infinity;
-    for (const Edge& edge : edges_.items())
-      distance = std::min(distance, distance_from_segment(place, edge.a, edge.b));
-    distance = -distance;
-  }
+  const double distance = inside ? distance_to_nearest : -distance_to_nearest;
   const bool holds = inside && clear;
   WallState state{.inside = holds};
-  if (distance < Box<2>::infinity) state.add(distance, reach, holds);
+  state.add(distance, reach, holds);
   return state;
+}
+
+/// In boxes that become larger until one holds the nearest edge for certain.
+double RevolvedWall::distance_from_nearest(const Vector<2>& place, const Box<2>& around, double first) const {
+  double nearest = Box<2>::infinity;
+  for (double looked = first; nearest > looked; looked = nearest < Box<2>::infinity ? nearest : 4 * looked)
+    edges_.for_each_touching(widened(around, rounded_up(looked)), [&](const Edge& edge) {
+      nearest = std::min(nearest, distance_from_segment(place, edge.a, edge.b));
+    });
+  return nearest;
 }
 
 bool RevolvedWall::center_inside(const Ball<3>& ball, const Box<2>& place, Arithmetic arithmetic,

@@ -26,6 +26,7 @@ class RevolvedWall {
   };
 
   static std::vector<Edge> edges_of(const Revolved& solid);
+  double distance_from_nearest(const Vector<2>& place, const Box<2>& around, double first) const;
   bool center_inside(const Ball<3>& ball, const Box<2>& place, Arithmetic arithmetic, Tally& tally) const;
 
   const Revolved& solid_;

@@ -161,6 +161,26 @@ TEST(RevolvedAtTies, TheCertificateAgreesWithTheExactWalls) {
   EXPECT_GT(refused, 5000);
 }
 
+// A gap is known of every ball, however far from the wall.
+TEST(RevolvedCertificate, TheLeastGapToTheWallIsThatOfTheClearance) {
+  for (const Shape& shape : shapes()) {
+    const auto walls = make_analytic_container(shape.solid, WallArithmetic::exact, 1e-16);
+    Random random(7, stream(Stream::test));
+    for (int k = 0; k < 100; ++k) {
+      const Vector<3> c = uniform_point<3>(random, bounds_of(Domain(shape.solid)));
+      const double clearance = walls->clearance(c);
+      if (!(clearance > 1e-6)) continue;
+      const double r = clearance * random.uniform(1e-3, 0.999);
+      Spheres<dynamic> one(3);
+      one.push_back(Vector<dynamic>(c), r);
+      const Certificate certificate = certify(one, shape.solid);
+      EXPECT_TRUE(certificate.certified) << shape.name;
+      EXPECT_GT(certificate.walls_tested, 0u) << shape.name;
+      EXPECT_NEAR(certificate.min_wall_gap, (clearance - r) / r, 1e-9 * (clearance / r)) << shape.name;
+    }
+  }
+}
+
 // Where the exact way ends the next double is past the contact, and before it all is clear.
 TEST(RevolvedWays, EndWhereTheBallTouches) {
   int limited = 0, far = 0;

@@ -7,6 +7,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
+#include "bernal/report/describe.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "domain/revolved_surface.hpp"
@@ -83,6 +84,30 @@ TEST(Shapes, APrismIsAClosedMeshOfItsVolume) {
   EXPECT_FALSE(container->contains({2.5, 3.5, 4}, 0.1));
   EXPECT_TRUE(container->contains({3.5, 3.5, 4}, 0.5));
   EXPECT_EQ(mesh.triangles.size(), 2 * (13 + 2 * 2 - 2) + 2 * 13u);
+}
+
+// 0.1 + 0.2 is above 0.3 as a sum of doubles, and less than the double next to it: the wall is the sum.
+TEST(Shapes, APrismWithABaseIsCertifiedAgainstItsExactCorners) {
+  const Domain prism = domain_with(
+      "kind = \"extruded\"\npolygon = [[0, 0], [0.2, 0], [0.2, 10], [0, 10]]\nheight = 10\n"
+      "base = [0.1, 0, 0]\n");
+  ASSERT_TRUE(std::get<Mesh>(prism).exact);
+  Spheres<dynamic> ball(3);
+  ball.push_back(Vector<3>(0.25, 5, 5), 0.050000000000000044);
+  EXPECT_FALSE(certify(ball, prism).certified);
+  ball.r[0] = 0.05;
+  EXPECT_TRUE(certify(ball, prism).certified);
+  const Domain whole = domain_with(
+      "kind = \"extruded\"\npolygon = [[0, 0], [2, 0], [2, 10], [0, 10]]\nheight = 10\nbase = [1, 2, 3]\n");
+  EXPECT_FALSE(std::get<Mesh>(whole).exact);
+}
+
+TEST(Shapes, AreCalledByTheirWordsAndAPointByItsNumber) {
+  const Plan cone = build(parse_scene(scene_with("kind = \"cone\"\nradii = [3, 1]\nheight = 4"), "s.toml"));
+  EXPECT_NE(describe(cone).find("container  cone,"), std::string::npos) << describe(cone);
+  EXPECT_NE(error_with("kind = \"revolved\"\nprofile = [[0, 0], [2, 2, 1], [0, 2]]")
+                .find("point 2 of \"profile\" in [container] must be two numbers [r, z]"),
+            std::string::npos);
 }
 
 TEST(Shapes, WhatTheyAreNotIsSaidInOneLine) {
