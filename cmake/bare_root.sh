@@ -8,6 +8,7 @@
 #   in_root user bernal --version        # as root, with nothing of this environment
 #   as_user user bernal --version        # as a user who owns a home and nothing else
 #   apt_in user install zsh
+#   ccache_in user                       # in_root user env "${cached[@]}" …: by ccache, in BERNAL_CCACHE if that names one
 #
 # BERNAL_ROOTS names a folder that keeps what debootstrap has made, as SUITE.tar: the next root of that suite is
 # unpacked from there. Whoever wants the Debian of today removes these files.
@@ -100,4 +101,17 @@ apt_in() {
   local root="$1"
   shift
   in_root "$root" apt-get --yes --quiet=2 "$@" </dev/null
+}
+
+# shellcheck disable=SC2034  # those who source this use it
+# Leaves in $cached the variables by which what is compiled in a root is kept in BERNAL_CCACHE; none without that.
+ccache_in() {
+  cached=()
+  [[ -n "${BERNAL_CCACHE:-}" ]] || return 0
+  mkdir -p "$BERNAL_CCACHE" "$work/$1/ccache"
+  mount --bind "$BERNAL_CCACHE" "$work/$1/ccache"
+  apt_in "$1" install --no-install-recommends ccache >/dev/null || return
+  # Precompiled headers need the last two.
+  cached=(CCACHE_DIR=/ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache CXXFLAGS=-fpch-preprocess
+    "CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime")
 }
