@@ -382,8 +382,7 @@ Plan made_plan(const Scene& stated) {
     require_gaps(plan);
     if (is_faceted(plan.domain)) plan.container = container_of(plan);
     expect_with_room(plan);
-    if (plan.scene.target
-            .predicted) {  // again from the number that this is, as whoever reads it will have it
+    if (plan.scene.target.predicted) {  // again from the number that whoever reads it will have
       plan.scene.target.predicted = false;
       expect_with_room(plan);
       plan.scene.target.predicted = true;

@@ -227,24 +227,14 @@ class Reader {
     }
   }
 
-  /// Names the first element of a line of points that is none.
-  void refuse_point(const toml::node& node, const Key& key, const std::string& where) const {
-    const toml::array* line = node.as_array();
-    if (!line) return;
-    for (std::size_t k = 0; k < line->size(); ++k) {
-      const toml::array* point = line->get(k)->as_array();
-      if (point && point->size() == 2) continue;
-      fail(line->get(k)->source(), "point {} of \"{}\" in {} must be two numbers {}, not {}", k + 1, key.name,
-           where, key.name == "profile" ? "[r, z]" : "[x, y]", written(*line->get(k)));
-    }
-  }
-
   Value read_value(const toml::node& node, const Key& key, const std::string& where) const {
     if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
     if (key.type == Type::parts) return read_parts(node, key, where);
     const std::optional<Value> value = value_of(node, key, where);
     if (value && schema::accepts(key, *value)) return *value;
-    if (key.type == Type::points) refuse_point(node, key, where);
+    if (const auto k = key.type == Type::points ? first_that_is_no_point(node) : std::nullopt)
+      fail(node.as_array()->get(*k)->source(), "point {} of \"{}\" in {} must be two numbers {}, not {}", *k + 1,
+           key.name, where, key.name == "profile" ? "[r, z]" : "[x, y]", written(*node.as_array()->get(*k)));
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
            remedy(std::get<std::string>(*value), key.words));

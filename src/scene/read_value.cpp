@@ -107,6 +107,13 @@ static std::string without_unit(const std::string& name, const Measured& measure
   return value ? fmt::format("{} {}", name.substr(0, sign + 1), *value) : name;
 }
 
+std::optional<std::size_t> first_that_is_no_point(const toml::node& node) {
+  const toml::array* line = node.as_array();
+  for (std::size_t k = 0; line && k < line->size(); ++k)
+    if (const toml::array* point = line->get(k)->as_array(); !point || point->size() != 2) return k;
+  return std::nullopt;
+}
+
 std::optional<schema::Value> names_in(const toml::node& node, const Measured& measured) {
   std::vector<std::string> names;
   const auto take = [&](const toml::node& item) {

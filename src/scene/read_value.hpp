@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -28,6 +29,10 @@ std::optional<schema::Value> value_in(const toml::node& node, bool as_double, co
 
 /// The node as closed lines of points [x, y], or as one such line; nothing for anything else.
 std::optional<schema::Value> lines_in(const toml::node& node, bool one, const Measured& measured);
+
+/// The place of the first element of an array that is not an array of two; nothing where all are, or for
+/// anything else.
+std::optional<std::size_t> first_that_is_no_point(const toml::node& node);
 
 /// The node as names, whole numbers among them; nothing for anything else. What is measured stands behind a
 /// sign in a name, and is left without its unit: "z < 5 mm" becomes "z < 5".
