@@ -75,7 +75,7 @@ OutputTable table_for(const Format& format) {
                    .sizes = format.sizes,
                    .solids = format.solids,
                    .is_folder = format.is_folder};
-  made.keys.choices = format.choices;
+  made.keys.choices.insert(made.keys.choices.end(), format.choices.begin(), format.choices.end());
   made.keys.rule = format.rule;
   return made;
 }

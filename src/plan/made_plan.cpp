@@ -15,7 +15,7 @@ namespace {
 Plan plan_of_largest(const Scene& stated) {
   constexpr double first_share = 0.3, least_share = 1e-3;  // of the domain's volume
   // Runs that the search takes, and the time of one that fails, over that of one that does not, and at least.
-  constexpr double runs = 60, dear = 20, least_seconds = 0.02;
+  constexpr double runs = 100, dear = 20, least_seconds = 0.02;
   Scene scene = stated;
   complete(scene);
   const int dimension = scene.dimension();
@@ -32,7 +32,7 @@ Plan plan_of_largest(const Scene& stated) {
           {.name = "search",
            .what = "the same for larger and larger spheres, and for sizes in between, from several "
                    "beginnings each, until the largest are known to 1e-4",
-           .cost = "some 60 runs",
+           .cost = "some 100 runs",
            .seconds = runs * (dear * plan.expected_seconds + least_seconds)});
       plan.expected_seconds += plan.items.back().seconds;
       return plan;

@@ -9,7 +9,7 @@ namespace bernal {
 /// gaps, relaxation of up to 1e-4 of the radii, by which the spheres are smaller than they could be. The
 /// result is that of the run with the largest ones, and its scene, with their size and its seed, runs again
 /// to the same bits. Precondition: the plan is one of `build`. No time decides anything, so that one seed
-/// gives one packing. Cost: some sixty such runs; where the container is a CAD file, each reads it.
+/// gives one packing. Cost: up to some hundred such runs; where the container is a CAD file, each reads it.
 Packing run_largest(const Plan& plan, const RunOptions& options);
 
 }  // namespace bernal

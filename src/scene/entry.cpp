@@ -126,8 +126,14 @@ std::vector<std::string_view> Entry::left_out(const void* options, const Section
           *std::ranges::find_if(choice, [&](const Names& set) { return holds(set, present[0]); });
       const auto other =
           std::ranges::find_if(present, [&](std::string_view key) { return !holds(first, key); });
+      // A key that several sets have goes with it; one that no set has together with it does not.
+      const auto excluded = std::ranges::find_if(present, [&](std::string_view key) {
+        return std::ranges::none_of(choice,
+                                    [&](const Names& set) { return holds(set, key) && holds(set, *other); });
+      });
       section.fail(*other, fmt::format("\"{}\" and \"{}\" in {} exclude each other; give one of them",
-                                       present[0], *other, section.name));
+                                       excluded == present.end() ? present[0] : *excluded, *other,
+                                       section.name));
     }
     for (const Names& set : choice)
       for (const std::string_view key : set)

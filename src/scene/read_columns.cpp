@@ -1,5 +1,7 @@
 #include "scene/read_columns.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -7,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/quantity.hpp"
 #include "bernal/core/text.hpp"
+#include "core/lower_case.hpp"
 #include "files/csv_headings.hpp"
 #include "files/csv_lines.hpp"
 #include "files/file_kind.hpp"
@@ -44,6 +48,14 @@ std::optional<std::vector<double>> numbers_in(std::string_view line, std::size_t
     if (line.starts_with(',') || line.starts_with(';')) line = trimmed(line.substr(1));
   }
   return numbers.size() == count && line.empty() ? std::optional(numbers) : std::nullopt;
+}
+
+/// "0, 12" for "pan, 12"; empty where the line begins with something else.
+std::string with_zero_for_pan(std::string_view line) {
+  constexpr std::string_view pan = "pan";
+  const bool begins = line.size() > pan.size() && in_lower_case(std::string(line.substr(0, pan.size()))) == pan &&
+                      std::isalnum(static_cast<unsigned char>(line[pan.size()])) == 0;
+  return begins ? "0" + std::string(line.substr(pan.size())) : std::string();
 }
 
 bool is_length_column(const schema::Key& key) {
@@ -99,8 +111,8 @@ std::vector<double> read_npy_column(const std::filesystem::path& file, const Wan
 }  // namespace
 
 std::vector<std::vector<double>> read_columns(const std::filesystem::path& file,
-                                              const WantedColumns& wanted) {
-  const auto& keys = wanted.keys;
+                                              WantedColumns& wanted) {
+  auto& keys = wanted.keys;
   require_readable(file);
   const std::size_t count = keys.size();
   if (count == 1 && is_npy_file(file)) return {read_npy_column(file, wanted)};
@@ -133,6 +145,8 @@ std::vector<std::vector<double>> read_columns(const std::filesystem::path& file,
     if (const auto name = unit_in_remark(line)) take_unit(*name);
     line = trimmed(line.substr(0, line.find('#')));
     if (line.empty()) continue;
+    const std::string with_pan = keys[0]->range.min == 0 ? with_zero_for_pan(line) : std::string();
+    if (!with_pan.empty()) line = with_pan;
     if (const auto numbers = numbers_in(line, count)) {
       for (std::size_t k = 0; k < count; ++k) {
         const double value = (*numbers)[swapped ? 1 - k : k];
@@ -149,14 +163,19 @@ std::vector<std::vector<double>> read_columns(const std::filesystem::path& file,
       headed = true;
       const Headings headings = headings_in(line);
       if (headings.columns.size() != count) continue;
+      if (wanted.other && std::ranges::find(headings.columns, wanted.other->name, &Heading::name) !=
+                              headings.columns.end())
+        keys[1] = wanted.other;
       swapped = count == 2 && headings.columns[0].name == keys[1]->name &&
-                headings.columns[1].name == keys[0]->name;
+                (headings.columns[1].name == keys[0]->name || keys[1] == wanted.other);
       for (std::size_t k = 0; k < count; ++k)
         if (const std::string& said = headings.columns[swapped ? 1 - k : k].unit;
             is_length_column(*keys[k]) && !said.empty())
           take_unit(said);
     } else {
-      fail(fmt::format("expected {}; not {}", expected_line(wanted), toml_string(line.substr(0, 40))));
+      const auto with_point = count == 1 ? without_decimal_comma(line) : std::nullopt;
+      fail(fmt::format("expected {}; not {}{}", expected_line(wanted), toml_string(line.substr(0, 40)),
+                       with_point ? ": write " + *with_point + " in place of the decimal comma" : ""));
     }
   }
   if (columns[0].empty())

@@ -293,9 +293,11 @@ class Reader {
     const bool is_list = keys.size() == 1;
     try {
       // More points are measurements, not a distribution; and a scene has to hold them.
-      const auto columns = read_columns(beside(at_file, file),
-                                        {keys, unit_, is_list ? most_listed : 4096,
-                                         is_list ? "take a histogram of them" : "sum them up in fewer"});
+      WantedColumns wanted{keys, unit_, is_list ? most_listed : 4096,
+                           is_list ? "take a histogram of them" : "sum them up in fewer",
+                           entry.find("retained")};
+      const auto columns = read_columns(beside(at_file, file), wanted);
+      keys = wanted.keys;
       for (std::size_t k = 0; k < keys.size(); ++k) {
         keys[k]->member.set(options, columns[k]);
         locations.keys[std::string(keys[k]->name)] = at_file;
@@ -313,9 +315,9 @@ class Reader {
     const Location at_file = locations.of("file");
     try {
       // So many, which the scene of a result holds, can be read there again.
-      const auto columns =
-          read_columns(beside(at_file, file),
-                       {{&x, &y}, unit_, 20'000, "leave out corners that are finer than discs or spheres can feel"});
+      WantedColumns wanted{{&x, &y}, unit_, 20'000,
+                           "leave out corners that are finer than discs or spheres can feel"};
+      const auto columns = read_columns(beside(at_file, file), wanted);
       Polygon polygon{{{}}};
       for (std::size_t k = 0; k < columns[0].size(); ++k)
         polygon.loops.front().emplace_back(columns[0][k], columns[1][k]);

@@ -31,11 +31,21 @@ void lognormal_rule(const Lognormal& of, const Section& section) {
   limits_rule(of, section);
   if (of.d43 && *of.d43 <= *of.d32)
     section.refuse("d43", fmt::format("must be above \"d32\", but {} is not above {}", *of.d43, *of.d32));
+  // Beyond, sigma would be 0 to rounding, or more than the most that it may be.
+  constexpr double narrowest = 1e-7, widest = 1e5;
+  if (of.mean && of.sd && *of.sd < narrowest * *of.mean)
+    section.refuse("sd", fmt::format("must be at least {:g} of \"mean\"; spheres of one size are a plain length",
+                                     narrowest));
+  if (of.mean && of.sd && *of.sd > widest * *of.mean)
+    section.refuse("sd", fmt::format("must be at most {:g} times \"mean\"", widest));
 }
 
 using Numbers = std::function<std::optional<double>(std::string_view)>;
 
 std::string instead_in_lognormal(std::string_view key, const Numbers& number) {
+  const bool is_percentile = std::ranges::find(named_percentiles, key, &NamedPercentile::name) !=
+                             named_percentiles.end();
+  if (is_percentile && key != "d50") return "; percentiles are of distribution = \"percentiles\"";
   if (key == "d50")
     return "; that of a sieve analysis is the \"median\" with basis = \"volume\", and with other percentiles "
            "distribution = \"percentiles\"";

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -85,9 +88,22 @@ void sieve_rule(const Sieve& of, const Section& section) {
   if (curve.pan == 0)
     section.refuse("pan", "is the lower end of what is in the pan, but there is none: name it as the size 0");
   if (*of.pan >= curve.openings.at(1))
-    section.refuse("pan", fmt::format("must be below the finest sieve, but {} is not below {}", *of.pan,
-                                      curve.openings[1]));
+    section.refuse(
+        "pan",
+        fmt::format("is a size, which is below the finest sieve, but {} is not below {}; how much is in "
+                    "the pan stands in the list, at the size 0",
+                    *of.pan, curve.openings[1]));
 }
+
+namespace {
+
+std::string_view in_words(PercentileLaw law) {
+  return law == PercentileLaw::normal          ? "normal"
+         : law == PercentileLaw::rosin_rammler ? "Rosin-Rammler"
+                                               : "lognormal";
+}
+
+}  // namespace
 
 void percentiles_rule(const Percentiles& of, const Section& section) {
   const NamedPercentile* last = nullptr;
@@ -123,6 +139,26 @@ void percentiles_rule(const Percentiles& of, const Section& section) {
     section.fail("law", fmt::format("law = \"rosin_rammler\" in {} needs \"min\", for by number it has fines "
                                     "without end; 1 % of this fit lies below {:.3g}",
                                     section.name, law.size_at(of.law, 0.01)));
+  constexpr double far_off = 1.5;
+  const NamedPercentile* worst = nullptr;
+  double most = far_off, in_its_place = 0;
+  for (const NamedPercentile& each : named_percentiles)
+    if (const auto& size = of.*each.member) {
+      const double fitted = law.size_at(of.law, each.share);
+      const double times =
+          fitted > 0 ? std::max(fitted / *size, *size / fitted) : std::numeric_limits<double>::infinity();
+      if (times <= most) continue;
+      worst = &each;
+      most = times;
+      in_its_place = fitted;
+    }
+  if (worst)
+    section.fail(
+        worst->name,
+        fmt::format("no {} law goes near all percentiles in {}: the best would have {:.3g} "
+                    "as \"{}\" in place of {:.6g}; say law = \"through\" for a curve "
+                    "exactly through them",
+                    in_words(of.law), section.name, in_its_place, worst->name, *(of.*worst->member)));
 }
 
 void histogram_rule(const Histogram& of, const Section& section) {

@@ -79,10 +79,9 @@ std::optional<CrystalSites> most_sites(const CrystalGround& ground, const Crysta
   return most;
 }
 
-/// The sites of the crystal that the options ask for, of spheres up to radius r, in the scene's unit.
-template <class SitesOf>
-CrystalSites sites_asked(const Insert& options, const CrystalGround& ground, double r, const SitesOf& sites_of) {
-  const CrystalCell cell = cell_of(options.layout, ground.dimension);
+/// The spacing of the crystal that the options ask for, of spheres up to radius r, in the scene's unit. Throws
+/// Error{bad_scene} where there is none.
+double spacing_asked(const Insert& options, const CrystalGround& ground, const CrystalCell& cell, double r) {
   if (options.spacing && *options.spacing < 2 * r)
     throw Error(ErrorCode::bad_scene,
                 fmt::format("spacing = {:.10g} is less than the largest diameter, {:.10g}; leave it out, and "
@@ -92,9 +91,31 @@ CrystalSites sites_asked(const Insert& options, const CrystalGround& ground, dou
   const auto spacing =
       spacing_dividing(ground, cell, least, options.spacing ? roundings_of_periods : most_stretch);
   if (!spacing) refuse_periods(options.layout, ground, cell, least);
-  const auto sites = most_sites(ground, cell, *spacing, r, sites_of);
-  if (!sites) refuse_periods(options.layout, ground, cell, least);
+  return *spacing;
+}
+
+/// The sites of that crystal.
+template <class SitesOf>
+CrystalSites sites_asked(const Insert& options, const CrystalGround& ground, double r, const SitesOf& sites_of) {
+  const CrystalCell cell = cell_of(options.layout, ground.dimension);
+  const auto sites = most_sites(ground, cell, spacing_asked(options, ground, cell, r), r, sites_of);
+  if (!sites) refuse_periods(options.layout, ground, cell, options.spacing.value_or(2 * r));
   return *sites;
+}
+
+/// Where a scene says it by itself: of equal spheres in a periodic box, or anywhere.
+void require_crystal(const Insert& insert, const Scene& scene) {
+  const auto* equal = std::get_if<Constant>(&scene.sizes);
+  const bool as_said = equal && equal->value > 0 && scene.scale == 1 && !scene.largest;
+  if (!as_said || scene.start.file || scene.asks_for_gaps()) return;
+  CrystalGround ground;
+  ground.dimension = scene.dimension();
+  if (const auto* box = std::get_if<PeriodicBox>(&scene.container); box && box->walls.empty())
+    for (int k = 0; k < ground.dimension; ++k)
+      ground.boundary.edges[k] = box->edge.value_or(
+          box->size.empty() ? 0 : box->size[std::min(static_cast<std::size_t>(k), box->size.size() - 1)]);
+  spacing_asked(insert, ground, cell_of(insert.layout, ground.dimension),
+                equal->value / (scene.sizes_are_diameters ? 2 : 1));
 }
 
 double density_of(const Insert& options, int dimension, double largest) {
@@ -131,7 +152,15 @@ void complete_insert(Insert& insert, Scene& scene, const schema::Section& sectio
                      "must be \"fcc\", \"bcc\", \"hcp\" or \"sc\" in a periodic box; \"fly\" fills one at random");
     if (box->scalable) section.refuse("layout", "needs a periodic box of given \"size\" or \"edge\"");
   }
-  if (!insert.is_crystal()) insert.packing_fraction = insert.until();
+  if (insert.is_crystal()) {
+    try {
+      require_crystal(insert, scene);
+    } catch (const Error& error) {
+      throw Error(error.code(), error.what(), section.locations.of("layout"));
+    }
+    return;
+  }
+  insert.packing_fraction = insert.until();
 }
 
 StageEnd insert_crystal(const Insert& options, SpheresInBed& in_bed, Reporter& report) {

@@ -89,8 +89,8 @@ std::unique_ptr<SizeDistribution> make_lognormal_of_mean(double mean, double dev
                                                          double min, double max) {
   require_positive("the mean radius", mean);
   require_positive("the standard deviation", deviation);
-  const double spread = 1 + deviation / mean * (deviation / mean);
-  return make_lognormal(mean / std::sqrt(spread), std::sqrt(std::log(spread)), basis, min, max);
+  const double square = std::pow(deviation / mean, 2);
+  return make_lognormal(mean / std::sqrt(1 + square), std::sqrt(std::log1p(square)), basis, min, max);
 }
 
 }  // namespace bernal

@@ -149,6 +149,18 @@ TEST(InsertCrystal, RefusesPeriodsThatItDoesNotDivideAndNamesTheNearest) {
             std::string::npos);
 }
 
+/// As it is refused, so it is not planned.
+TEST(InsertCrystal, IsRefusedBeforeItIsRun) {
+  const auto scene = [](const std::string& container, const std::string& keys) {
+    return "unit = \"mm\"\n[container]\n" + container +
+           "[spheres]\nfill = true\ndiameter = 1\n[[stage]]\ndo = \"insert\"\nlayout = \"fcc\"\n" + keys;
+  };
+  EXPECT_THROW(plan_of(scene("kind = \"periodic\"\nsize = [5, 5, 5]\n", "")), Error);
+  EXPECT_THROW(plan_of(scene("kind = \"box\"\nsize = [9, 9, 9]\n", "spacing = 0.5\n")), Error);
+  EXPECT_NO_THROW(plan_of(scene("kind = \"box\"\nsize = [9, 9, 9]\n", "spacing = 1.5\n")));
+  EXPECT_NO_THROW(plan_of(scene("kind = \"periodic\"\nedge = 7.0710678119\n", "")));
+}
+
 TEST(InsertCrystal, TakesASpacing) {
   const std::string spheres = "fill = true\ndiameter = 1\n";
   const Packing wide = packed("kind = \"periodic\"\nsize = [6, 7.2, 8.4]\n", spheres, "sc", "spacing = 1.2\n");

@@ -35,7 +35,7 @@ std::string sample(const Key& key, int choice) {
   if (key.name == "retained") return "[25.5, 0, 30]";
   if (key.name == "edges") return "[0.3, 1, 2, 1e3]";
   if (key.type == Type::length && key.is_diameter && key.name != "d43" && key.name != "d32")
-    return std::string(key.name.substr(1));  // D10 = 10, and so on: they ascend
+    return fmt::format("10.{:0>2}", key.name.substr(1));  // D10 = 10.10, and so on: they ascend, near any law
   switch (key.type) {
     case Type::flag:
       return "true";
@@ -113,6 +113,7 @@ std::string sample_of(const Entry& entry, const Key& key, int choice) {
       return choice == 0 ? "\"mine.x\"" : "'a \"b\" \\c'";
   // With which every other key acts.
   if (key.name == "top") return "\"heap\"";
+  if (key.name == "layout") return choice == 0 ? "\"hcp\"" : "\"sc\"";
   for (const OutputTable* format : output_tables())
     if (&format->keys == &entry && key.name == "contact")
       return format->solids ? "\"bridge\"" : choice == 0 ? "\"gap\"" : "\"shrink\"";
@@ -147,9 +148,11 @@ void visit_stage(const StageTable& stage, std::size_t n, Visit visit) {
     std::erase_if(keys, [&](const Key& key) { return !key.acts_here(stage.traits.stands_in_bed(where)); });
     visit(stage.keys, keys, [&](const std::vector<std::string>& lines) {
       const std::string body = fmt::format("do = \"{}\"\n{}", stage.name(), fmt::join(lines, "\n"));
-      return where.is_periodic() ? "[container]\nkind = \"periodic\"\n[spheres]\ncount = 9\nradius = 1\n"
-                                   "[[stage]]\n" +
-                                       body + "\n"
+      const char* edge = stage.name() == "insert" ? "edge = 9\n" : "";  // of a crystal
+      return where.is_periodic() ? fmt::format(
+                                       "[container]\nkind = \"periodic\"\n{}[spheres]\ncount = 9\nradius = "
+                                       "1\n[[stage]]\n{}\n",
+                                       edge, body)
                                  : with_stage(body);
     });
   }
@@ -194,7 +197,7 @@ void for_every_entry(Visit visit) {
         const bool of_bed = of_heap || key.name == "bed" || key.name == "porosity" || key.name == "height" ||
                             key.name == "bed_layers";
         if (key.name == "start_box") return !periodic;
-        if (key.name == "bulk_density") return true;  // becomes a porosity, see amounts_test.cpp
+        if (key.name == "bulk_density") return true;    // becomes a porosity, see amounts_test.cpp
         return periodic ? of_bed : is_open && of_heap;  // no heap fills its container, no bed a period
       });
       visit(schema::spheres_entry(), keys, [&](const std::vector<std::string>& lines) {

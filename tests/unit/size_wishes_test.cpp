@@ -167,6 +167,20 @@ TEST(Sieve, APanReachesToWhereItIsSaidOrToHalfOfTheFinestSieve) {
   }
 }
 
+TEST(Sieve, OfAFileMayBeWhatIsRetainedWithThePanByItsName) {
+  const testing::Folder folder;
+  const auto of_file = [&](const std::string& name, const std::string& text) {
+    folder.write(name, text);
+    return radii_of(
+        parse_scene(testing::with_spheres("radius = { distribution = \"sieve\", file = \"" + name + "\" }"),
+                    folder / "s.toml"));
+  };
+  const auto inline_one = diameters_of("\"sieve\", sizes = [2, 1, 0.5, 0], retained = [0, 40, 50, 10]");
+  expect_same(*of_file("a.csv", "size, retained\n2, 0\n1, 40\n0.5, 50\nPan, 10\n"), *inline_one);
+  expect_same(*of_file("b.csv", "retained;size (m)\n0;2\n40;1\n50;0.5\n10;0\n"), *inline_one);
+  expect_same(*of_file("c.csv", "size, passing\n2, 100\n1, 60\n0.5, 10\npan, 0\n"), *inline_one);
+}
+
 TEST(Histogram, HasWhatIsInEachBinByNumberOrByMass) {
   const auto counts = diameters_of("\"histogram\", edges = [0, 1, 2, 4], counts = [0, 30, 10]");
   EXPECT_NEAR(counts->cumulative(2), 0.75, 1e-15);
@@ -294,8 +308,10 @@ TEST(List, StandsInAFileAsTextOrAsAnArray) {
   }
   folder.write("two.csv", "1.5, 2\n");
   folder.write("none.csv", "diameters\n");
+  folder.write("comma.csv", "1,5\n");
   for (const auto& [name, why] :
-       {std::pair("two.csv", "one of the values, a number"), std::pair("none.csv", "no line has a number")}) {
+       {std::pair("two.csv", "one of the values, a number"), std::pair("none.csv", "no line has a number"),
+        std::pair("comma.csv", "write 1.5 in place of the decimal comma")}) {
     try {
       parse_scene(
           testing::with_spheres(fmt::format("diameter = {{ distribution = \"list\", file = \"{}\" }}", name)),
