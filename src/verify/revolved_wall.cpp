@@ -172,11 +172,12 @@ WallState RevolvedWall::wall_state_of(const Ball<3>& ball, const CertifyOptions&
 /// In boxes that become larger until one holds the nearest edge for certain.
 double RevolvedWall::distance_from_nearest(const Vector<2>& place, const Box<2>& around, double first) const {
   double nearest = Box<2>::infinity;
-  for (double looked = first; nearest > looked; looked = nearest < Box<2>::infinity ? nearest : 4 * looked)
+  for (double looked = first;; looked = nearest < Box<2>::infinity ? nearest : 4 * looked) {
     edges_.for_each_touching(widened(around, rounded_up(looked)), [&](const Edge& edge) {
       nearest = std::min(nearest, distance_from_segment(place, edge.a, edge.b));
     });
-  return nearest;
+    if (nearest <= looked) return nearest;
+  }
 }
 
 bool RevolvedWall::center_inside(const Ball<3>& ball, const Box<2>& place, Arithmetic arithmetic,
