@@ -24,7 +24,7 @@ double down(double x) { return std::nextafter(x, -std::numeric_limits<double>::i
 TEST(PeriodicCertificate, OfNothingIsTrue) {
   const Certificate c = expect_truth(Spheres<2>(), periodic_box({1, 2}));
   EXPECT_TRUE(c.certified);
-  EXPECT_EQ(c.statement, "Certified: there are no spheres.");
+  EXPECT_EQ(c.statement, "Certified: there are no discs.");
 }
 
 TEST(PeriodicCertificate, ALatticeTouchesItselfAcrossEveryFace) {
@@ -101,7 +101,7 @@ TEST(PeriodicCertificate, ASphereMayTouchItsOwnImageAndNoMore) {
   EXPECT_TRUE(touching.certified);
   EXPECT_EQ(
       touching.statement,
-      "Certified: 1 sphere in a periodic box, 1 near pair decided exactly, no overlap; closest pair gap 0 of "
+      "Certified: 1 disc in a periodic box, 1 near pair decided exactly, no overlap; closest pair gap 0 of "
       "the sum of radii.");
   EXPECT_EQ(touching.worst_pair, (std::array<std::uint64_t, 2>{0, 0}));
 

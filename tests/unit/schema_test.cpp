@@ -33,6 +33,7 @@ std::string sample(const Key& key, int choice) {
   // Of a sieve with a pan: nothing lies on the coarsest.
   if (key.name == "sizes") return "[1, 2, 0]";
   if (key.name == "retained") return "[25.5, 0, 30]";
+  if (key.name == "spacing") return "2.5";  // of crystals: no less than the spheres are wide
   if (key.name == "edges") return "[0.3, 1, 2, 1e3]";
   if (key.type == Type::length && key.is_diameter && key.name != "d43" && key.name != "d32")
     return fmt::format("10.{:0>2}", key.name.substr(1));  // D10 = 10.10, and so on: they ascend, near any law

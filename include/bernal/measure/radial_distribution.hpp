@@ -57,10 +57,11 @@ struct RadialOptions {
   static constexpr double least_share = 0.05;
 };
 
-/// Absent for fewer than two spheres, and between walls in other than three dimensions. A distance below the start of a bin by up to 1e-6 of its width counts in that bin, so that
-/// rounding does not split the contacts of equal spheres. Cost: min(options.work, O(N reach^D)), at about 2
-/// ns, between walls and options.places questions to them; memory O(N). `made`: as
-/// `MeasureOptions::container`. Precondition: bin and reach positive.
+/// Absent for fewer than two spheres, and between walls in other than three dimensions. A distance below the
+/// start of a bin by up to 1e-6 of its width counts in that bin, so that rounding does not split the contacts
+/// of equal spheres. Cost: min(options.work, O(N reach^D)), at about 2 ns, between walls and options.places
+/// questions to them; memory O(N). `made`: as `MeasureOptions::container`. Precondition: bin and reach
+/// positive.
 std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>&, const Domain&,
                                                       const RadialOptions& = {},
                                                       const std::shared_ptr<const Container>& made = {});

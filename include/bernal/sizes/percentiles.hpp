@@ -11,8 +11,8 @@ struct Percentile {
   double share = 0, size = 0;
 };
 
-/// The law that percentiles are taken to follow. `through`: none; the curve goes exactly through them, straight
-/// in between over the logarithm of the size, as that of a sieve analysis.
+/// The law that percentiles are taken to follow. `through`: none; the curve goes exactly through them,
+/// straight in between over the logarithm of the size, as that of a sieve analysis.
 enum class PercentileLaw { lognormal, rosin_rammler, normal, through };
 
 /// A law with two parameters is a straight line over its own axis of shares, place + spread·score(share):
