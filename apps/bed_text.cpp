@@ -30,9 +30,10 @@ void print_bed(const BedProfile& bed, std::string_view unit) {
     fmt::print("  covered         {:.2f} % of the cross-section, of which the height is\n",
                100 * bed.covered);
   if (bed.covered < BedProfile::well_covered)
-    fmt::print("  level           none, below {:g} %: walls, pores and g(r) are those of the whole container, air "
-               "included\n",
-               100 * BedProfile::well_covered);
+    fmt::print(
+        "  level           none, below {:g} %: walls, pores and g(r) are those of the whole container, air "
+        "included\n",
+        100 * BedProfile::well_covered);
   fmt::print("  porosity        {:.4f} ± {:.4f} up to the surface, floor and top included\n", bed.porosity,
              bed.porosity_error);
   if (bed.core)

@@ -70,8 +70,7 @@ void print_column(const Packing& packing, const ColumnProfile& column) {
   }
   fmt::print("\n");
   if (column.side && column.side->profile.first_minimum)
-    fmt::print("first minimum     {} from the side\n",
-               minimum_text(*column.side->profile.first_minimum, d));
+    fmt::print("first minimum     {} from the side\n", minimum_text(*column.side->profile.first_minimum, d));
   if (column.floor_minimum)
     fmt::print("                  {} from the floor\n", minimum_text(*column.floor_minimum, d));
   if (column.lid_minimum)
@@ -80,9 +79,8 @@ void print_column(const Packing& packing, const ColumnProfile& column) {
 
 void print_walls(const Packing& packing, const Measurements& measured) {
   const WallProfile& profile = *measured.walls;
-  fmt::print(
-      "\nporosity over the distance z from the nearest wall, in mean diameters of {:.6g} {}{}\n",
-      profile.mean_diameter, name_of(packing.scene.unit), part_of_bed(packing, measured.bed));
+  fmt::print("\nporosity over the distance z from the nearest wall, in mean diameters of {:.6g} {}{}\n",
+             profile.mean_diameter, name_of(packing.scene.unit), part_of_bed(packing, measured.bed));
   print_profile(profile);
   double error = 0;
   for (const WallProfile::Layer& layer : profile.layers) error = std::max(error, layer.error);

@@ -14,8 +14,8 @@ namespace {
 
 /// Whether the nearest point of a facet is on another one that comes nearer to the centre. Then it is no
 /// nearest point of the wall as a whole: next to it, on the other facet, the wall comes nearer. This
-/// happens where triangles or frustums share an edge or a corner; the pieces of analytic walls never share their nearest
-/// points.
+/// happens where triangles or frustums share an edge or a corner; the pieces of analytic walls never share
+/// their nearest points.
 bool on_nearer_facet(const Vector<3>& q, std::size_t index, const std::vector<NearFacet>& near,
                      double tolerance) {
   if (!has_border(near[index].facet.kind)) return false;

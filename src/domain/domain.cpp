@@ -187,16 +187,15 @@ bool has_walls(const Domain& domain) {
 }
 
 int symmetries_of(const Domain& domain) {
-  return std::visit(
-      Overloaded{[](const Box& s) {
-                   int shifts = 0;
-                   for (int k = 0; k < s.dimension(); ++k) shifts += s.repeats(k);
-                   return shifts;
-                 },
-                 [](const Cylinder& s) { return s.periodic ? 2 : 1; }, [](const Sphere&) { return 3; },
-                 [](const Mesh&) { return 0; }, [](const Polygon&) { return 0; },
-                 [](const Revolved&) { return 1; }},
-      domain);
+  return std::visit(Overloaded{[](const Box& s) {
+                                 int shifts = 0;
+                                 for (int k = 0; k < s.dimension(); ++k) shifts += s.repeats(k);
+                                 return shifts;
+                               },
+                               [](const Cylinder& s) { return s.periodic ? 2 : 1; },
+                               [](const Sphere&) { return 3; }, [](const Mesh&) { return 0; },
+                               [](const Polygon&) { return 0; }, [](const Revolved&) { return 1; }},
+                    domain);
 }
 
 bool is_periodic(const Domain& domain) {

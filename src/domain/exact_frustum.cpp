@@ -39,8 +39,7 @@ struct AboutAxis {
     const int su = sign_of(u.u0, u.u1, X), sv = sign_of(v.u0, v.u1, X);
     if (sv == 0 || su == sv) return su;
     if (su == 0) return sv;
-    const Dyadic rational =
-        square(u.u0) + square(u.u1) * X - N * (square(v.u0) + square(v.u1) * X);
+    const Dyadic rational = square(u.u0) + square(u.u1) * X - N * (square(v.u0) + square(v.u1) * X);
     const Dyadic two = 2;
     return su * sign_of(rational, two * (u.u0 * u.u1 - N * v.u0 * v.u1), X);
   }
@@ -109,7 +108,8 @@ double free_path(const ProfileEdge& edge, const Motion& m, WallArithmetic arithm
   for (int graze = 0; graze < most_grazes; ++graze) {
     const Real t = way.first_below(m.r, from, limit);
     const bool ends = t == FrustumWay::never;
-    if (ends && (!std::isfinite(m.limit) || way.distance(limit) > m.r + way.error(limit, m.r))) return m.limit;
+    if (ends && (!std::isfinite(m.limit) || way.distance(limit) > m.r + way.error(limit, m.r)))
+      return m.limit;
     const Real at = ends ? Real(limit) : t;
     const Real slack = tolerance::roundoff * ((way.lengths() + m.r) / way.speed() + 2 * at);
     const Real before = std::max(from, at - slack), beyond = std::min<Real>(limit, at + slack);

@@ -75,9 +75,7 @@ FrustumWay::FrustumWay(const ProfileEdge& edge, const Vector<3>& c, const Vector
   lengths_ = w.norm() + std::abs(a_[0]) + std::abs(a_[1]) + length_;
 }
 
-FrustumWay::Point FrustumWay::at(Real t) const {
-  return {(p_ + t * v_).norm(), z_ + t * vz_};
-}
+FrustumWay::Point FrustumWay::at(Real t) const { return {(p_ + t * v_).norm(), z_ + t * vz_}; }
 
 Real FrustumWay::distance(Real t) const {
   const Point p = at(t);
@@ -87,9 +85,7 @@ Real FrustumWay::distance(Real t) const {
   return std::abs(x * e_[1] - y * e_[0]) / length_;
 }
 
-Real FrustumWay::error(Real t, double r) const {
-  return 64 * tiny * (lengths_ + std::abs(t) * speed_ + r);
-}
+Real FrustumWay::error(Real t, double r) const { return 64 * tiny * (lengths_ + std::abs(t) * speed_ + r); }
 
 Real FrustumWay::line_distance(Real t) const {
   const Point p = at(t);
@@ -102,9 +98,9 @@ FrustumWay::Crossing FrustumWay::line_below(Real R, Real from, Real limit) const
   for (const Real side : {Real(1), Real(-1)}) {
     const Real k = side * R + n0 * a_[0] + n1 * (a_[1] - z_), m = n1 * vz_;
     Real roots[2];
-    const int count = n0 == 0 ? roots_of(0, Real(-0.5) * m, k, roots)
-                              : roots_of(n0 * n0 * vv_ - m * m, n0 * n0 * pv_ + k * m, n0 * n0 * pp_ - k * k,
-                                         roots);
+    const int count =
+        n0 == 0 ? roots_of(0, Real(-0.5) * m, k, roots)
+                : roots_of(n0 * n0 * vv_ - m * m, n0 * n0 * pv_ + k * m, n0 * n0 * pp_ - k * k, roots);
     for (int i = 0; i < count; ++i) {
       const auto offset = [&](Real t) { return side * (n0 * at(t)[0] - (k - m * t)); };
       const auto slope = [&](Real t) {

@@ -67,9 +67,9 @@ class FrustumWay {
 
   Point a_, e_;  // the first end, and the way to the other
   Real length_;
-  Real z_, vz_;            // z(t) = z + vz t
-  LongVector p_, v_;       // across the axis, r(t) = |p + t v|
-  Real pp_, pv_, vv_;      // its square is pp + 2 pv t + vv t²; for roots, which near the axis are none too good
+  Real z_, vz_;        // z(t) = z + vz t
+  LongVector p_, v_;   // across the axis, r(t) = |p + t v|
+  Real pp_, pv_, vv_;  // its square is pp + 2 pv t + vv t²; for roots, which near the axis are none too good
   Real speed_, lengths_;
 };
 
@@ -91,8 +91,8 @@ bool clears_exactly(const ProfileEdge& edge, const ExactVector& p, double r);
 /// Whether the ray from p away from the axis crosses the edge, whose lower end alone belongs to it.
 bool is_crossed_outwards_exactly(const ProfileEdge& edge, const ExactVector& p);
 
-/// The move limit without a skin, see domain/free_path.hpp, at the levels filtered and exact; where a way only
-/// grazes the piece, by less than a 2^-60th of the lengths, it may end there.
+/// The move limit without a skin, see domain/free_path.hpp, at the levels filtered and exact; where a way
+/// only grazes the piece, by less than a 2^-60th of the lengths, it may end there.
 double free_path(const ProfileEdge& edge, const Motion& motion, WallArithmetic arithmetic);
 
 /// See `first_contact_exactly` in domain/free_path.hpp.

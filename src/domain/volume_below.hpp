@@ -9,10 +9,10 @@ namespace bernal {
 /// How much of a domain is below a level across the direction of gravity. Heights are those of points along
 /// -`down`. The divergence theorem over the facets of its surface, of which those that are upright drop out:
 ///   V(h) = sum of (projected area) · mean of min(z - h, 0), with z the height on a facet.
-/// Exact to rounding for boxes, spheres, meshes and polygons, and for cylinders and solids of revolution that stand upright; those
-/// that lean are prisms of a thousand sides and the same volume, to 1e-5, or of fewer where a profile has
-/// many edges. What an inset takes away is spread
-/// evenly. Along an axis that repeats itself it is one period.
+/// Exact to rounding for boxes, spheres, meshes and polygons, and for cylinders and solids of revolution that
+/// stand upright; those that lean are prisms of a thousand sides and the same volume, to 1e-5, or of fewer
+/// where a profile has many edges. What an inset takes away is spread evenly. Along an axis that repeats
+/// itself it is one period.
 ///
 /// Cost: O(facets) a level. Precondition: a domain of two or three dimensions; `down` a unit vector, across
 /// the axes that repeat themselves, of two dimensions in the plane z = 0.

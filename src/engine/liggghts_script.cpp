@@ -62,8 +62,7 @@ struct LiggghtsWalls {
 std::string of_pairs(int types, double spheres, double walls) {
   std::string text;
   for (int i = 1; i <= types; ++i)
-    for (int j = 1; j <= types; ++j)
-      text += fmt::format(" {}", i == types || j == types ? walls : spheres);
+    for (int j = 1; j <= types; ++j) text += fmt::format(" {}", i == types || j == types ? walls : spheres);
   return text;
 }
 

@@ -66,8 +66,7 @@ std::optional<Domain> without_ends(const Domain& domain, const Vector<3>& axis) 
 std::vector<double> porosities_from(const Spheres<3>& spheres, const VolumeBelow& below, const Vector<3>& up,
                                     double from, double thickness, std::size_t layers) {
   // One more on either side takes what is beyond.
-  const std::vector<double> filled =
-      filled_slices(spheres, 3, up, from - thickness, thickness, layers + 2);
+  const std::vector<double> filled = filled_slices(spheres, 3, up, from - thickness, thickness, layers + 2);
   std::vector<double> level(layers + 1), porosities(layers);
   parallel_for(layers + 1,
                [&](std::size_t k) { level[k] = below(from + static_cast<double>(k) * thickness); });
@@ -104,8 +103,7 @@ std::optional<ColumnProfile> column_profile(const Spheres<dynamic>& packed, cons
   const double thickness = std::max(options.layer * diameter, top / static_cast<double>(options.most_layers));
   const auto layers =
       static_cast<std::size_t>(std::max(1.0, std::ceil(top / thickness - rounding_of_slices)));
-  const std::vector<double> up_from_floor =
-      porosities_from(spheres, below, axis, floor, thickness, layers);
+  const std::vector<double> up_from_floor = porosities_from(spheres, below, axis, floor, thickness, layers);
   for (std::size_t k = 0; k < layers; ++k) {
     const double from = static_cast<double>(k) * thickness;
     const double to = has_level ? from + thickness : std::min(from + thickness, top);

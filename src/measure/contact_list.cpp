@@ -80,8 +80,7 @@ void reorder(std::vector<T>& column, const std::vector<std::uint64_t>& order) {
 void sort(ContactList& list) {
   std::vector<std::uint64_t> order(list.size());
   std::iota(order.begin(), order.end(), std::uint64_t{0});
-  std::ranges::stable_sort(
-      order, {}, [&](std::uint64_t k) { return std::pair{list.i[k], list.j[k]}; });
+  std::ranges::stable_sort(order, {}, [&](std::uint64_t k) { return std::pair{list.i[k], list.j[k]}; });
   reorder(list.i, order);
   reorder(list.j, order);
   reorder(list.gap, order);

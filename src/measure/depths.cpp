@@ -107,8 +107,7 @@ double volume_in(const Domain& shape, const LowerPart& part) {
 
 Depths::Depths(const Domain& shape, const Container& container, double reach, std::size_t points,
                const std::optional<LowerPart>& below)
-    : below_(below),
-      volume_(below ? volume_in(shape, *below) : container.volume()) {
+    : below_(below), volume_(below ? volume_in(shape, *below) : container.volume()) {
   if (std::holds_alternative<Mesh>(shape) || std::holds_alternative<Revolved>(shape)) {
     shape_ = Mesh{};
     sampled_ = sample(container, reach, points, below, volume_);

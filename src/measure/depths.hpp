@@ -8,10 +8,10 @@
 
 namespace bernal {
 
-/// The distribution of depth in a container, or in its part below a level or between two: the share of the volume farther
-/// than z from the wall. Exact to rounding for a box, a cylinder and a sphere, whose points deeper than z
-/// form a smaller shape of the same kind (as long as before along periodic axes); for a mesh or a solid of
-/// revolution from points in the cells of a grid.
+/// The distribution of depth in a container, or in its part below a level or between two: the share of the
+/// volume farther than z from the wall. Exact to rounding for a box, a cylinder and a sphere, whose points
+/// deeper than z form a smaller shape of the same kind (as long as before along periodic axes); for a mesh or
+/// a solid of revolution from points in the cells of a grid.
 class Depths {
  public:
   /// Samples about `points` points inside a mesh, to a depth of `reach`. Cost: up to 16 times as many

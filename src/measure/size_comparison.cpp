@@ -158,8 +158,8 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
 }
 
-void compare_volume_quantiles(const std::vector<double>& sorted, const SizeDistribution& asked,
-                              int dimension, SizeComparison& result) {
+void compare_volume_quantiles(const std::vector<double>& sorted, const SizeDistribution& asked, int dimension,
+                              SizeComparison& result) {
   std::vector<double> up_to;
   double sum = 0;
   for (const double r : sorted) up_to.push_back(sum += std::pow(r / sorted.back(), dimension));

@@ -175,7 +175,8 @@ void add_bin(const std::vector<WaveVector<D>>& vectors, std::span<const double> 
 std::optional<StructureFactor::Peak> StructureFactor::peak() const {
   std::optional<std::size_t> highest;
   for (std::size_t b = 0; b < k.size(); ++b)
-    if (k[b] * mean_diameter > peak_from && k[b] * mean_diameter < peak_to && (!highest || s[b] > s[*highest]))
+    if (k[b] * mean_diameter > peak_from && k[b] * mean_diameter < peak_to &&
+        (!highest || s[b] > s[*highest]))
       highest = b;
   if (!highest || *highest == 0 || *highest + 1 == k.size()) return {};
   const std::size_t b = *highest;

@@ -88,8 +88,7 @@ struct AsSum {
   std::uint32_t* ends;
 
   Vector<D> operator()(std::uint32_t i, std::uint32_t j, double, const Vector<D>& d) const {
-    for (const std::uint32_t end : {i, j})
-      std::atomic_ref(ends[end]).fetch_add(1, std::memory_order_relaxed);
+    for (const std::uint32_t end : {i, j}) std::atomic_ref(ends[end]).fetch_add(1, std::memory_order_relaxed);
     return d.stableNormalized();
   }
 };
@@ -203,8 +202,7 @@ Parts<As> parts_in_own_frame(const Spheres<dynamic>& spheres, const Domain& doma
 }
 
 template <class As>
-Parts<As> parts_of(const Spheres<dynamic>& spheres, const Domain& domain,
-                                                      const As& as) {
+Parts<As> parts_of(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
   if (spheres.empty()) return {};
   if (has_own_frame(domain)) return parts_in_own_frame(spheres, domain, as);
   return with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {

@@ -192,8 +192,7 @@ class Volumes {
 
 double filled_below(const Spheres<3>& spheres, const LowerPart& below) {
   double sum = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    sum += volume_in(below, spheres.center(i), spheres.r[i]);
+  for (std::size_t i = 0; i < spheres.size(); ++i) sum += volume_in(below, spheres.center(i), spheres.r[i]);
   return sum;
 }
 

@@ -80,8 +80,8 @@ std::string hint_of_shares(const Plan& plan) {
       fmt::join(by_number, " : "), fmt::join(by_mass, " : "));
 }
 
-/// Of sizes with a basis, of which the scene's text says none; classes have their own hint, and percentiles say
-/// theirs with their law.
+/// Of sizes with a basis, of which the scene's text says none; classes have their own hint, and percentiles
+/// say theirs with their law.
 std::string hint_of_basis(const Plan& plan) {
   const SceneSizes& sizes = plan.scene.sizes;
   const bool counts_spheres = std::visit(

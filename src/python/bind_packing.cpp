@@ -73,8 +73,9 @@ py::object walls_of(const Packing& packing) {
 
 std::vector<double> coordination_of(const Packing& packing, const std::vector<double>& gaps) {
   std::vector<double> all;
-  for (const Contacts& contacts : measure_contacts_across(packing.scene.gap, packing.scene.wall_gap, packing.spheres,
-                                                          packing.domain, gaps, packing.container))
+  for (const Contacts& contacts :
+       measure_contacts_across(packing.scene.gap, packing.scene.wall_gap, packing.spheres, packing.domain,
+                               gaps, packing.container))
     all.push_back(contacts.coordination);
   return all;
 }

@@ -206,11 +206,11 @@ JobPointer import_arrays_job(const Numbers& centers, const Numbers& radii, const
 }
 
 JobPointer import_file_job(const Path& file, const std::string& format, const std::string& columns,
-                      std::optional<double> diameter, std::optional<double> radius,
-                      const std::optional<Path>& radii, const Text& unit, const std::vector<double>& box,
-                      const std::string& periodic, const Scene* container,
-                      const std::vector<double>& shift, std::optional<int> frame,
-                      std::optional<int> dimension) {
+                           std::optional<double> diameter, std::optional<double> radius,
+                           const std::optional<Path>& radii, const Text& unit, const std::vector<double>& box,
+                           const std::string& periodic, const Scene* container,
+                           const std::vector<double>& shift, std::optional<int> frame,
+                           std::optional<int> dimension) {
   const ImportOptions options{.format = format,
                               .columns = columns,
                               .diameter = diameter,

@@ -43,8 +43,7 @@ void write_radial(Page& page, const RadialDistribution& radial) {
   page.raw(
       "<p>The radial distribution function g(r): how many centres lie at a distance from a centre, compared "
       "with as many spread by chance");
-  if (!radial.share.empty())
-    page.raw(" a mean diameter or more off the walls, and in a bed below its level");
+  if (!radial.share.empty()) page.raw(" a mean diameter or more off the walls, and in a bed below its level");
   page.raw(". The band is the standard error.</p>\n");
   if (!radial.peaks.empty()) {
     page.raw("<table><tr><th>peak at, in mean diameters</th><th class=\"n\">g</th></tr>\n");
@@ -127,7 +126,8 @@ void write_column(Page& page, const ColumnProfile& column, const Report& report)
   if (!column.side) return;
   const WallProfile& side = column.side->profile;
   page.add(
-      "<h2>From the side of the column inwards</h2>\n<p>The same for the side walls alone, between {:.4g} and "
+      "<h2>From the side of the column inwards</h2>\n<p>The same for the side walls alone, between {:.4g} "
+      "and "
       "{:.4g} {} above the floor: the ends are left out.</p>\n<div class=\"pair\"><div>{}</div><div "
       "class=\"wide\"><table>\n",
       column.side->from, column.side->to, escaped(name_of(report.packing.scene.unit)), wall_chart(side));

@@ -113,9 +113,9 @@ void write_classes(Page& page, const Sizes& sizes, const std::map<double, std::u
         100 * sizes.volume(size) * n / volume,
         asked_cell(asked,
                    asked ? share * std::pow(radius, sizes.dimension) / asked->moment(sizes.dimension) : 0),
-        mass > 0 ? fmt::format("<td class=\"n\">{:.2f}</td>",
-                               100 * density(size) * sizes.volume(size) * n / mass)
-                 : "");
+        mass > 0
+            ? fmt::format("<td class=\"n\">{:.2f}</td>", 100 * density(size) * sizes.volume(size) * n / mass)
+            : "");
   }
   page.raw("</table>\n");
 }

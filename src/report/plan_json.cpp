@@ -11,7 +11,8 @@ namespace bernal {
 
 std::string plan_as_json(const Plan& plan) {
   using nlohmann::ordered_json;
-  ordered_json container = {{"kind", schema::word_of(plan.scene.container, plan.domain)}, {"volume", volume_of(plan.domain)}};
+  ordered_json container = {{"kind", schema::word_of(plan.scene.container, plan.domain)},
+                            {"volume", volume_of(plan.domain)}};
   if (!plan.scene.is_periodic()) {
     const Bounds<3> bounds = bounds_of(plan.domain);
     container["bounds"] = {bounds.lower, bounds.upper};
@@ -39,7 +40,8 @@ std::string plan_as_json(const Plan& plan) {
                        {"file", plain_text(output.file.string())},
                        {"unit", name_of(output.unit.value_or(Unit::m))}});
   const SizeSummary summary = summary_of(plan.scene, *plan.radii);
-  ordered_json shares = ordered_json::array(), percentiles = ordered_json::array(), law = ordered_json::array();
+  ordered_json shares = ordered_json::array(), percentiles = ordered_json::array(),
+               law = ordered_json::array();
   for (const SizeSummary::Share& share : summary.shares)
     shares.push_back({{"size", share.size},
                       {"name", share.name.empty() ? ordered_json() : ordered_json(share.name)},

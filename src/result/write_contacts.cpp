@@ -23,8 +23,7 @@ namespace {
 std::string heading_of_contacts(int dimension) {
   std::vector<std::string> columns = csv_columns(dimension), normal;
   columns.pop_back();  // the radius
-  for (const std::string& axis : columns)
-    normal.push_back("n" + (dimension == 3 ? axis : axis.substr(1)));
+  for (const std::string& axis : columns) normal.push_back("n" + (dimension == 3 ? axis : axis.substr(1)));
   return fmt::format("i,j,gap,{},{}", fmt::join(normal, ","), fmt::join(columns, ","));
 }
 
@@ -39,8 +38,8 @@ void visit_row(const ContactList& contacts, std::size_t c, const Visit& visit) {
 void write_contacts_csv(OutputFile& out, const ContactList& contacts, std::string_view unit) {
   constexpr std::size_t longest_number = 32;
   const std::size_t columns = 3 + contacts.normal.size() + contacts.place.size();
-  out.append(fmt::format("# unit: {}\n{}\n", unit,
-                         heading_of_contacts(static_cast<int>(contacts.normal.size()))));
+  out.append(
+      fmt::format("# unit: {}\n{}\n", unit, heading_of_contacts(static_cast<int>(contacts.normal.size()))));
   std::vector<char> line(columns * longest_number);
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     char* end = line.data();

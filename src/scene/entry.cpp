@@ -131,9 +131,9 @@ std::vector<std::string_view> Entry::left_out(const void* options, const Section
         return std::ranges::none_of(choice,
                                     [&](const Names& set) { return holds(set, key) && holds(set, *other); });
       });
-      section.fail(*other, fmt::format("\"{}\" and \"{}\" in {} exclude each other; give one of them",
-                                       excluded == present.end() ? present[0] : *excluded, *other,
-                                       section.name));
+      section.fail(*other,
+                   fmt::format("\"{}\" and \"{}\" in {} exclude each other; give one of them",
+                               excluded == present.end() ? present[0] : *excluded, *other, section.name));
     }
     for (const Names& set : choice)
       for (const std::string_view key : set)

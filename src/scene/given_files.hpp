@@ -9,7 +9,8 @@
 namespace bernal {
 
 /// What a file would hold that a scene names and whose content it has itself: a surface as OFF, the spheres
-/// of a start and a long list of sizes as .npy, all with the same doubles; nothing where the name is that of a file.
+/// of a start and a long list of sizes as .npy, all with the same doubles; nothing where the name is that of
+/// a file.
 std::optional<std::string> content_given(const Scene&, const std::filesystem::path& name);
 
 /// Whether there is such content, at no cost.

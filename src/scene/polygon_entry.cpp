@@ -53,10 +53,9 @@ void require_holes_inside(const Polygon& polygon, const Section& section) {
 /// `corners`: the key that the outline stands under.
 void require_polygon(const Polygon& polygon, const Section& section, std::string_view corners) {
   if (polygon.loops.empty() || polygon.loops.front().empty())
-    section.fail("",
-                 fmt::format("{} needs \"{}\", an array of three points [x, y] or more, or a \"file\" "
-                             "of such",
-                             section.name, corners));
+    section.fail("", fmt::format("{} needs \"{}\", an array of three points [x, y] or more, or a \"file\" "
+                                 "of such",
+                                 section.name, corners));
   const auto require = [&](const Polygon& lines, std::string_view key) {
     try {
       require_simple(lines);

@@ -41,8 +41,8 @@ std::optional<std::vector<double>> numbers_in(std::string_view line, std::size_t
     const std::optional<double> number = take_number(line);
     if (!number) return std::nullopt;
     numbers.push_back(*number);
-    const bool parted = !line.empty() && (trimmed(line.substr(0, 1)).empty() || line.front() == ',' ||
-                                          line.front() == ';');
+    const bool parted =
+        !line.empty() && (trimmed(line.substr(0, 1)).empty() || line.front() == ',' || line.front() == ';');
     line = trimmed(line);
     if (numbers.size() == count || !parted) break;
     if (line.starts_with(',') || line.starts_with(';')) line = trimmed(line.substr(1));
@@ -53,7 +53,8 @@ std::optional<std::vector<double>> numbers_in(std::string_view line, std::size_t
 /// "0, 12" for "pan, 12"; empty where the line begins with something else.
 std::string with_zero_for_pan(std::string_view line) {
   constexpr std::string_view pan = "pan";
-  const bool begins = line.size() > pan.size() && in_lower_case(std::string(line.substr(0, pan.size()))) == pan &&
+  const bool begins = line.size() > pan.size() &&
+                      in_lower_case(std::string(line.substr(0, pan.size()))) == pan &&
                       std::isalnum(static_cast<unsigned char>(line[pan.size()])) == 0;
   return begins ? "0" + std::string(line.substr(pan.size())) : std::string();
 }
@@ -76,9 +77,10 @@ void require_readable(const std::filesystem::path& file) {
   const FileKind kind = kind_of_file(file);
   if (kind == FileKind::regular) return;
   const std::string name = toml_string(file.string());
-  throw Error(ErrorCode::bad_scene, kind == FileKind::missing  ? fmt::format("there is no file {}", name)
-                                    : kind == FileKind::folder ? fmt::format("{} is a folder", name)
-                                                               : fmt::format("{} is a pipe or a device", name));
+  throw Error(ErrorCode::bad_scene, kind == FileKind::missing ? fmt::format("there is no file {}", name)
+                                    : kind == FileKind::folder
+                                        ? fmt::format("{} is a folder", name)
+                                        : fmt::format("{} is a pipe or a device", name));
 }
 
 /// An array of NumPy's.
@@ -110,8 +112,7 @@ std::vector<double> read_npy_column(const std::filesystem::path& file, const Wan
 
 }  // namespace
 
-std::vector<std::vector<double>> read_columns(const std::filesystem::path& file,
-                                              WantedColumns& wanted) {
+std::vector<std::vector<double>> read_columns(const std::filesystem::path& file, WantedColumns& wanted) {
   auto& keys = wanted.keys;
   require_readable(file);
   const std::size_t count = keys.size();
@@ -163,8 +164,8 @@ std::vector<std::vector<double>> read_columns(const std::filesystem::path& file,
       headed = true;
       const Headings headings = headings_in(line);
       if (headings.columns.size() != count) continue;
-      if (wanted.other && std::ranges::find(headings.columns, wanted.other->name, &Heading::name) !=
-                              headings.columns.end())
+      if (wanted.other &&
+          std::ranges::find(headings.columns, wanted.other->name, &Heading::name) != headings.columns.end())
         keys[1] = wanted.other;
       swapped = count == 2 && headings.columns[0].name == keys[1]->name &&
                 (headings.columns[1].name == keys[0]->name || keys[1] == wanted.other);

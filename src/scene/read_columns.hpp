@@ -20,9 +20,9 @@ struct WantedColumns {
 /// Those of a text file: one number a line, or one pair with a comma, semicolon or blank space between. Empty
 /// lines and what follows a # are passed over; a line "# unit: m" is heeded. One line of headings may stand
 /// before the first number: where it names two columns the other way round, they are, and "size (m)" says a
-/// unit too. "pan" stands for the length 0 where that is one. One column may also be an array of NumPy's (.npy) of one dimension, in the wanted unit. Throws
-/// Error{bad_scene} with file and line, or without a location if the file cannot be read at all. `wanted` then
-/// names the columns that are there.
+/// unit too. "pan" stands for the length 0 where that is one. One column may also be an array of NumPy's
+/// (.npy) of one dimension, in the wanted unit. Throws Error{bad_scene} with file and line, or without a
+/// location if the file cannot be read at all. `wanted` then names the columns that are there.
 std::vector<std::vector<double>> read_columns(const std::filesystem::path& file, WantedColumns& wanted);
 
 }  // namespace bernal

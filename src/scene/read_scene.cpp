@@ -233,8 +233,9 @@ class Reader {
     const std::optional<Value> value = value_of(node, key, where);
     if (value && schema::accepts(key, *value)) return *value;
     if (const auto k = key.type == Type::points ? first_that_is_no_point(node) : std::nullopt)
-      fail(node.as_array()->get(*k)->source(), "point {} of \"{}\" in {} must be two numbers {}, not {}", *k + 1,
-           key.name, where, key.name == "profile" ? "[r, z]" : "[x, y]", written(*node.as_array()->get(*k)));
+      fail(node.as_array()->get(*k)->source(), "point {} of \"{}\" in {} must be two numbers {}, not {}",
+           *k + 1, key.name, where, key.name == "profile" ? "[r, z]" : "[x, y]",
+           written(*node.as_array()->get(*k)));
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
            remedy(std::get<std::string>(*value), key.words));
@@ -305,8 +306,8 @@ class Reader {
     const Location at_file = locations.of("file");
     try {
       // So many, which the scene of a result holds, can be read there again.
-      WantedColumns wanted{{&x, &y}, unit_, 20'000,
-                           "leave out corners that are finer than discs or spheres can feel"};
+      WantedColumns wanted{
+          {&x, &y}, unit_, 20'000, "leave out corners that are finer than discs or spheres can feel"};
       const auto columns = read_columns(beside(at_file, file), wanted);
       Polygon polygon{{{}}};
       for (std::size_t k = 0; k < columns[0].size(); ++k)

@@ -36,7 +36,8 @@ Revolved solid_of(const Tube& tube) {
     throw Error(ErrorCode::bad_argument,
                 fmt::format("a tube needs an inner radius below its radius of {}", tube.radius));
   const double in = tube.inner_radius, out = tube.radius, top = tube.height;
-  return checked({.base = tube.base, .axis = tube.axis, .profile = {{in, 0}, {out, 0}, {out, top}, {in, top}}});
+  return checked(
+      {.base = tube.base, .axis = tube.axis, .profile = {{in, 0}, {out, 0}, {out, top}, {in, top}}});
 }
 
 Revolved solid_of(const Lathed& lathed) {

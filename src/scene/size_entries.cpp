@@ -34,8 +34,9 @@ void lognormal_rule(const Lognormal& of, const Section& section) {
   // Beyond, sigma would be 0 to rounding, or more than the most that it may be.
   constexpr double narrowest = 1e-7, widest = 1e5;
   if (of.mean && of.sd && *of.sd < narrowest * *of.mean)
-    section.refuse("sd", fmt::format("must be at least {:g} of \"mean\"; spheres of one size are a plain length",
-                                     narrowest));
+    section.refuse(
+        "sd",
+        fmt::format("must be at least {:g} of \"mean\"; spheres of one size are a plain length", narrowest));
   if (of.mean && of.sd && *of.sd > widest * *of.mean)
     section.refuse("sd", fmt::format("must be at most {:g} times \"mean\"", widest));
 }
@@ -43,8 +44,8 @@ void lognormal_rule(const Lognormal& of, const Section& section) {
 using Numbers = std::function<std::optional<double>(std::string_view)>;
 
 std::string instead_in_lognormal(std::string_view key, const Numbers& number) {
-  const bool is_percentile = std::ranges::find(named_percentiles, key, &NamedPercentile::name) !=
-                             named_percentiles.end();
+  const bool is_percentile =
+      std::ranges::find(named_percentiles, key, &NamedPercentile::name) != named_percentiles.end();
   if (is_percentile && key != "d50") return "; percentiles are of distribution = \"percentiles\"";
   if (key == "d50")
     return "; that of a sieve analysis is the \"median\" with basis = \"volume\", and with other percentiles "
@@ -52,12 +53,14 @@ std::string instead_in_lognormal(std::string_view key, const Numbers& number) {
   if (key == "mu") return "; the mean of the logarithm, mu, is that of the \"median\", exp(mu)";
   for (const std::string_view same : {"std", "stdev", "std_dev", "standard_deviation"})
     if (key == same)
-      return "; the standard deviation of the size is \"sd\", beside \"mean\"; that of its logarithm \"sigma\"";
+      return "; the standard deviation of the size is \"sd\", beside \"mean\"; that of its logarithm "
+             "\"sigma\"";
   const bool is_variance = key == "variance";
   if (!is_variance && key != "cv") return {};
   const std::optional<double> mean = number("mean"), given = number(key);
-  std::string text = is_variance ? "; write its square root, the standard deviation, as \"sd\" beside \"mean\""
-                                 : "; write \"sd\", cv times the mean, beside \"mean\"";
+  std::string text = is_variance
+                         ? "; write its square root, the standard deviation, as \"sd\" beside \"mean\""
+                         : "; write \"sd\", cv times the mean, beside \"mean\"";
   if (mean && given && *mean > 0 && *given > 0)
     text += fmt::format("; here sd = {:.6g}", is_variance ? std::sqrt(*given) : *given * *mean);
   return text;
@@ -97,10 +100,11 @@ Key diameter(Member member, Text name, Text help) {
 
 template <class T>
 Key basis(Basis T::*member) {
-  return word(member, "basis",
-              "what shares and densities count: spheres, their volume or their mass, which is the same for one "
-              "material",
-              {"number", "volume", "mass"});
+  return word(
+      member, "basis",
+      "what shares and densities count: spheres, their volume or their mass, which is the same for one "
+      "material",
+      {"number", "volume", "mass"});
 }
 
 /// Lengths of which some may be 0.
@@ -110,8 +114,23 @@ Key lengths_from_zero(Member member, Text name, Text help) {
 
 std::vector<Key> percentile_keys() {
   static constexpr std::array<std::string_view, named_percentiles.size()> help = {
-      "3 % of the basis lies below", "5 %", "10 %", "16 %", "20 %", "25 %", "30 %", "half of it", "60 %",
-      "70 %", "75 %", "80 %", "84 %", "90 %", "95 %", "97 %", "99 %"};
+      "3 % of the basis lies below",
+      "5 %",
+      "10 %",
+      "16 %",
+      "20 %",
+      "25 %",
+      "30 %",
+      "half of it",
+      "60 %",
+      "70 %",
+      "75 %",
+      "80 %",
+      "84 %",
+      "90 %",
+      "95 %",
+      "97 %",
+      "99 %"};
   std::vector<Key> keys;
   for (std::size_t k = 0; k < help.size(); ++k) {
     keys.push_back(length(named_percentiles[k].member, named_percentiles[k].name, help[k]));
@@ -132,8 +151,8 @@ Member listed_values() {
 
 /// The name of that file, which is only written: a reader takes the values.
 Key listed_file() {
-  Key made = required(key(Type::file, {}, "file",
-                          "one column of sizes, as text or as an array of NumPy's (.npy)"));
+  Key made =
+      required(key(Type::file, {}, "file", "one column of sizes, as text or as an array of NumPy's (.npy)"));
   made.member.get = [](const void* list) -> std::optional<Value> {
     const auto& beside = static_cast<const ListedSizes*>(list)->beside;
     return beside.empty() ? std::nullopt : std::optional<Value>(beside.string());

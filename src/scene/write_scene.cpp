@@ -131,10 +131,9 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
   if (!folder.empty())
     for (std::filesystem::path* const file : files_named_in(named))
       if (!is_given(scene, *file)) *file = std::filesystem::proximate(*file, folder);
-  std::string out =
-      fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
-                  container_as_toml(named.container), lines(schema::spheres_entry(), &named),
-                  lines(schema::accuracy_entry(), &scene));
+  std::string out = fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
+                                container_as_toml(named.container), lines(schema::spheres_entry(), &named),
+                                lines(schema::accuracy_entry(), &scene));
   if (scene.engine) out += engine_as_toml(*scene.engine);
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
   for (const Output& output : scene.outputs) {

@@ -19,11 +19,9 @@ CrystalCell cell_of(Layout layout, int dimension) {
     return {{1, sqrt3, 1}, {{0, 0, 0}, {0.5, 0.5, 0}}, 0.9069};
   }
   if (layout == Layout::sc) return {{1, 1, 1}, {{0, 0, 0}}, 0.5236};
-  if (layout == Layout::bcc)
-    return {Vector<3>::Constant(2 / sqrt3), {{0, 0, 0}, {0.5, 0.5, 0.5}}, 0.6802};
+  if (layout == Layout::bcc) return {Vector<3>::Constant(2 / sqrt3), {{0, 0, 0}, {0.5, 0.5, 0.5}}, 0.6802};
   if (layout == Layout::fcc)
-    return {
-        Vector<3>::Constant(sqrt2), {{0, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}, 0.7405};
+    return {Vector<3>::Constant(sqrt2), {{0, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}, 0.7405};
   return {{1, sqrt3, std::sqrt(8.0 / 3)},
           {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 1.0 / 6, 0.5}, {0, 2.0 / 3, 0.5}},
           0.7405};
@@ -58,9 +56,9 @@ void refuse_periods(Layout layout, const CrystalGround& ground, const CrystalCel
   }
   throw Error(
       ErrorCode::bad_scene,
-      fmt::format("a crystal \"{}\" with sites {:.10g} apart does not fit into periods of {}; it fits into {}",
-                  names[static_cast<int>(layout)], spacing, fmt::join(periods, ", "),
-                  fmt::join(nearest, ", ")));
+      fmt::format(
+          "a crystal \"{}\" with sites {:.10g} apart does not fit into periods of {}; it fits into {}",
+          names[static_cast<int>(layout)], spacing, fmt::join(periods, ", "), fmt::join(nearest, ", ")));
 }
 
 Planes::Planes(const std::vector<double>& fractions, double from, double edge, int count, double period,
@@ -137,8 +135,8 @@ Ways::Ways(const CrystalGround& ground, const CrystalCell& cell, double spacing,
     } else if (ground.boundary.repeats(k)) {
       shifts = {ground.frame.to_scene(ground.boundary.origin)[k]};
     } else {
-      // A plane of sites as near the lower end as a sphere may be, to the bit or by roundings; where walls are
-      // not flat, also the middle on planes and between them.
+      // A plane of sites as near the lower end as a sphere may be, to the bit or by roundings; where walls
+      // are not flat, also the middle on planes and between them.
       const double roundings = 8 * ground.frame.scale * ground.frame.resolution;
       shifts.push_back(room_.lower[k]);
       for (const double f : fractions) shifts.push_back(room_.lower[k] + roundings - f * edges_[k]);
@@ -161,8 +159,7 @@ Crystal Ways::crystal(std::size_t way) const {
     } else if (ground_.boundary.repeats(k)) {
       const double period = ground_.period(k);
       const int cells = std::max(1, static_cast<int>(std::lround(period / edges_[k])));
-      laid.planes.emplace_back(fractions_[at], shift[at], period / cells, cells, period, origin,
-                               scale);
+      laid.planes.emplace_back(fractions_[at], shift[at], period / cells, cells, period, origin, scale);
     } else {
       const double before =
           std::max(0.0, std::ceil((shift[at] - room_.lower[k]) / edges_[k] - roundings_of_periods));

@@ -43,12 +43,12 @@ inline constexpr double roundings_of_periods = 1e-9;
                                  double spacing);
 
 /// The planes of sites across an axis: of those at each fraction of a cell the coordinate in every cell, the
-/// packer's and what becomes of that in the scene, to the bit. Sites have their coordinates from here, so that
-/// the distances between all of them follow from a few.
+/// packer's and what becomes of that in the scene, to the bit. Sites have their coordinates from here, so
+/// that the distances between all of them follow from a few.
 class Planes {
  public:
-  /// `count` cells of that edge, the first of them at `from`, in the scene's unit; all of them make up `period`,
-  /// unless it is 0.
+  /// `count` cells of that edge, the first of them at `from`, in the scene's unit; all of them make up
+  /// `period`, unless it is 0.
   Planes(const std::vector<double>& fractions, double from, double edge, int count, double period,
          double origin, double scale);
 

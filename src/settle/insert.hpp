@@ -33,7 +33,8 @@ double full_lattice(const EmptyBed& bed);
 StageEnd insert_crystal(const Insert& options, SpheresInBed& in_bed, Reporter& report);
 /// The same in a periodic box of given size, of which it has to divide the periods.
 StageEnd insert_crystal_in_box(const Insert& options, SpheresInBox& in_box, Reporter& report);
-/// How much denser it is than random packings of equal spheres, in a periodic box; below 1 where it is looser.
+/// How much denser it is than random packings of equal spheres, in a periodic box; below 1 where it is
+/// looser.
 double gain_of_crystal(const Insert& options, const SizeDistribution& radii, int dimension, bool has_walls);
 
 /// The packing fraction at which that ends in an empty container.

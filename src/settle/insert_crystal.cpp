@@ -35,7 +35,8 @@ CrystalGround ground_of(const SpheresInBox& in_box) {
 }
 
 /// The sites that have room for a sphere of that radius, in the scene's unit, in the packer's coordinates.
-CrystalSites free_sites(const SpheresInBed& in_bed, const Crystal& crystal, double r, const Monitor& monitor) {
+CrystalSites free_sites(const SpheresInBed& in_bed, const Crystal& crystal, double r,
+                        const Monitor& monitor) {
   const Bed& bed = in_bed.bed();
   const double own = r / in_bed.task.frame.scale;
   CrystalSites free;
@@ -54,8 +55,8 @@ CrystalSites free_sites(const SpheresInBed& in_bed, const Crystal& crystal, doub
 /// Of several ways to lay the crystal the one for which sites_of(crystal) are the most, from the floor up.
 /// Nothing where all ways would leave sites too near to each other.
 template <class SitesOf>
-std::optional<CrystalSites> most_sites(const CrystalGround& ground, const CrystalCell& cell, double spacing, double r,
-                                const SitesOf& sites_of) {
+std::optional<CrystalSites> most_sites(const CrystalGround& ground, const CrystalCell& cell, double spacing,
+                                       double r, const SitesOf& sites_of) {
   constexpr double sites_looked_at = 3e5;
   constexpr std::size_t fewest_ways = 6;
   const double roundings = ground.frame.scale * ground.frame.resolution;
@@ -79,8 +80,8 @@ std::optional<CrystalSites> most_sites(const CrystalGround& ground, const Crysta
   return most;
 }
 
-/// The spacing of the crystal that the options ask for, of spheres up to radius r, in the scene's unit. Throws
-/// Error{bad_scene} where there is none.
+/// The spacing of the crystal that the options ask for, of spheres up to radius r, in the scene's unit.
+/// Throws Error{bad_scene} where there is none.
 double spacing_asked(const Insert& options, const CrystalGround& ground, const CrystalCell& cell, double r) {
   if (options.spacing && *options.spacing < 2 * r)
     throw Error(ErrorCode::bad_scene,
@@ -96,7 +97,8 @@ double spacing_asked(const Insert& options, const CrystalGround& ground, const C
 
 /// The sites of that crystal.
 template <class SitesOf>
-CrystalSites sites_asked(const Insert& options, const CrystalGround& ground, double r, const SitesOf& sites_of) {
+CrystalSites sites_asked(const Insert& options, const CrystalGround& ground, double r,
+                         const SitesOf& sites_of) {
   const CrystalCell cell = cell_of(options.layout, ground.dimension);
   const auto sites = most_sites(ground, cell, spacing_asked(options, ground, cell, r), r, sites_of);
   if (!sites) refuse_periods(options.layout, ground, cell, options.spacing.value_or(2 * r));
@@ -143,13 +145,13 @@ void complete_insert(Insert& insert, Scene& scene, const schema::Section& sectio
   if (insert.spacing && !insert.is_crystal())
     section.refuse("spacing", "is that of a crystal: give layout = \"fcc\", \"bcc\", \"hcp\" or \"sc\" too");
   if (scene.dimension() == 2 && (insert.layout == Layout::fcc || insert.layout == Layout::bcc))
-    section.refuse("layout",
-                   "is none of discs: \"hcp\" is their hexagonal lattice, \"sc\" the square one");
+    section.refuse("layout", "is none of discs: \"hcp\" is their hexagonal lattice, \"sc\" the square one");
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   if (box && box->walls.empty()) {
     if (!insert.is_crystal())
-      section.refuse("layout",
-                     "must be \"fcc\", \"bcc\", \"hcp\" or \"sc\" in a periodic box; \"fly\" fills one at random");
+      section.refuse(
+          "layout",
+          "must be \"fcc\", \"bcc\", \"hcp\" or \"sc\" in a periodic box; \"fly\" fills one at random");
     if (box->scalable) section.refuse("layout", "needs a periodic box of given \"size\" or \"edge\"");
   }
   if (insert.is_crystal()) {
@@ -167,9 +169,7 @@ StageEnd insert_crystal(const Insert& options, SpheresInBed& in_bed, Reporter& r
   const EffectTimer timer(report.effects["insertion"]);
   Bed& bed = in_bed.bed();
   Supply& supply = *in_bed.supply;
-  const auto is_done = [&] {
-    return supply.exhausted() || bed.packing_fraction() >= options.until();
-  };
+  const auto is_done = [&] { return supply.exhausted() || bed.packing_fraction() >= options.until(); };
   if (is_done()) return StageEnd::converged;
   const double r = in_bed.task.frame.scale * supply.largest();
   const CrystalSites sites = sites_asked(options, ground_of(in_bed), r, [&](const Crystal& crystal) {

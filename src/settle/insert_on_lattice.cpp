@@ -152,9 +152,7 @@ StageEnd insert_on_lattice(const Insert& options, SpheresInBed& in_bed, Reporter
   Bed& bed = in_bed.bed();
   Supply& supply = *in_bed.supply;
   Random random = report.random(Stream::insert);
-  const auto is_done = [&] {
-    return supply.exhausted() || bed.packing_fraction() >= options.until();
-  };
+  const auto is_done = [&] { return supply.exhausted() || bed.packing_fraction() >= options.until(); };
   const std::size_t enough = std::min(in_bed.count_filling(options.until()), supply.wanted());
 
   SnugPlaces snug(in_bed, report);  // where a lattice has no site

@@ -101,9 +101,8 @@ std::unique_ptr<SizeDistribution> make_histogram(std::vector<double> edges, std:
   std::vector<double> filled;
   for (std::size_t i = 0; i < amounts.size(); ++i) {
     if (!(edges[i] < edges[i + 1]))
-      throw Error(
-          ErrorCode::bad_argument,
-          fmt::format("the edges must ascend, but {} stands before {}", edges[i], edges[i + 1]));
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("the edges must ascend, but {} stands before {}", edges[i], edges[i + 1]));
     if (!(amounts[i] >= 0 && std::isfinite(amounts[i])))
       throw Error(ErrorCode::bad_argument,
                   fmt::format("what is in a bin must be finite and at least 0, not {}", amounts[i]));

@@ -21,14 +21,15 @@ std::unique_ptr<SizeDistribution> make_rosin_rammler(double r63, double n, doubl
   if (max == std::numeric_limits<double>::infinity()) {
     max = r63 * std::pow(-std::log(share_above), 1 / n);
     if (min >= max)
-      throw Error(ErrorCode::bad_argument,
-                  fmt::format("no more than {} % of this Rosin-Rammler distribution lies above \"min\"; lower "
-                              "it, or give \"max\" too",
-                              100 * share_above));
+      throw Error(
+          ErrorCode::bad_argument,
+          fmt::format("no more than {} % of this Rosin-Rammler distribution lies above \"min\"; lower "
+                      "it, or give \"max\" too",
+                      100 * share_above));
   }
   require_interval(min, max);
-  // Density n x^(n-1) e^(-x^n) with x = r / r63, by volume over r³; scaled to 1 at r63, or at the limit nearest
-  // to it, so that it neither vanishes nor overflows.
+  // Density n x^(n-1) e^(-x^n) with x = r / r63, by volume over r³; scaled to 1 at r63, or at the limit
+  // nearest to it, so that it neither vanishes nor overflows.
   const double scale = std::clamp(r63, min, max);
   const double power_at_scale = std::pow(scale / r63, n);
   const bool by_volume = counts_volume(basis);

@@ -39,8 +39,8 @@ class FacetTable {
 
   /// A lower bound of the distance from the facet after a straight move by `move` from p, whose offset is
   /// `from`, and at any point of the way. For curved walls, whose inside is convex, the distance is concave
-  /// along the way. From a frustum it falls by no more than the way is long. For a triangle the bound is the distance from the plane through its nearest point, which
-  /// has all of the triangle behind it.
+  /// along the way. From a frustum it falls by no more than the way is long. For a triangle the bound is the
+  /// distance from the plane through its nearest point, which has all of the triangle behind it.
   double distance_after(Number n, const Vector<3>& p, const Vector<3>& from, double distance_before,
                         const Vector<3>& move) const {
     if (const auto* facet = std::get_if<Facet>(&ready_[n]))

@@ -32,11 +32,11 @@ using Walls = std::function<WallState(const Ball<D>& ball, const CertifyOptions&
 /// Decides for every ball whether it lies in the closed domain; along periodic axes it may lie anywhere.
 ///
 /// A box has two pieces of wall for every non-periodic axis, a cylinder three (base, top, side; only the side
-/// if periodic), a sphere one: every ball is tested against each. For a mesh the triangles (for a polygon or a
-/// profile the edges) with boxes that touch the ball's are tested, and the side of its centre is decided. Throws
-/// Error{bad_mesh} for a mesh that is not closed and Error{bad_argument} for invalid sizes. Cost: O(N), for a
-/// mesh of T triangles O(T log T + N log T + near pieces). Preconditions: D is the dimension of the domain,
-/// which must outlive the walls.
+/// if periodic), a sphere one: every ball is tested against each. For a mesh the triangles (for a polygon or
+/// a profile the edges) with boxes that touch the ball's are tested, and the side of its centre is decided.
+/// Throws Error{bad_mesh} for a mesh that is not closed and Error{bad_argument} for invalid sizes. Cost:
+/// O(N), for a mesh of T triangles O(T log T + N log T + near pieces). Preconditions: D is the dimension of
+/// the domain, which must outlive the walls.
 template <int D>
 Walls<D> walls_of(const Domain& domain);
 template <int D>

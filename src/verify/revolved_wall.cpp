@@ -82,8 +82,8 @@ Truth ball_clears_swept_edge(const Vector<3>& c, const Reach& reach, const Revol
   if (beyond == Truth::yes) return clear;
   // The square of |a| ((r, z) - a) × e = ez √X - er h + k √N
   const Number k = Number(a[1]) * er - Number(a[0]) * ez, g = minus_er * p.h, two(2);
-  const Number whole = square(ez) * p.X + square(k) * p.N + square(g) -
-                       squared_reach * (square(er) + square(ez)) * p.N;
+  const Number whole =
+      square(ez) * p.X + square(k) * p.N + square(g) - squared_reach * (square(er) + square(ez)) * p.N;
   return clear & (beyond | not_negative(p, whole, two * ez * g, two * k * g, two * ez * k));
 }
 

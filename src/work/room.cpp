@@ -102,8 +102,8 @@ void append_tangents_of_frustum(const Facet& facet, const Vector<3>& place, doub
   out /= r;
   const Vector<3> along = away + (inwards / r) * out, across = facet.b.cross(out);
   constexpr double third = 0.5, height = 0.8660254037844386;
-  for (const auto& [c, s] : {std::pair{third, height}, {third, -height}, {-third, height}, {-third, -height},
-                             {-1.0, 0.0}}) {
+  for (const auto& [c, s] :
+       {std::pair{third, height}, {third, -height}, {-third, height}, {-third, -height}, {-1.0, 0.0}}) {
     const Vector<3> turned = c * out + s * across, normal = along - (inwards / r) * turned;
     // The plane has the same distance from the axis point; r·(out - turned) is how much nearer it is.
     obstacles.push_back({normal, distance + normal.dot(r * (out - turned))});

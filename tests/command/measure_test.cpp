@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-
 #include "check.hpp"
 
 namespace bernal::testing {
@@ -181,10 +180,11 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
   ASSERT_EQ(bernal({"pack", box, "-o", out, "--quiet"}).status, 0);
   const Ended text = bernal({"measure", out});
   EXPECT_EQ(text.status, 0) << text.err;
-  for (const std::string part : {"with the wall", "porosity over the distance z from the nearest", "near the wall",
-                                 "porosity along the axis", "from the side alone", "between walls: by the share",
-                                 "core              packing fraction", "chambers          1; too narrow: ",
-                                 "crystalline", "segregation", "drawn sequence    the same sizes to the bit"})
+  for (const std::string part :
+       {"with the wall", "porosity over the distance z from the nearest", "near the wall",
+        "porosity along the axis", "from the side alone", "between walls: by the share",
+        "core              packing fraction", "chambers          1; too narrow: ", "crystalline",
+        "segregation", "drawn sequence    the same sizes to the bit"})
     EXPECT_NE(text.out.find(part), std::string::npos) << part << "\nis not in\n" << text.out;
   const auto measured = nlohmann::json::parse(bernal({"measure", out, "--json"}).out);
   const auto report = report_of(out);

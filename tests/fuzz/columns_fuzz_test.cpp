@@ -42,8 +42,7 @@ bool are_columns(const testing::Folder& folder, const std::string& text, const s
 
 std::string npy_of(const std::vector<double>& numbers) {
   std::string bytes = npy_header(numbers.size(), 0);
-  for (const double number : numbers)
-    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+  for (const double number : numbers) bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
   return bytes;
 }
 

@@ -54,9 +54,9 @@ inline std::vector<ContainerUnderTest> containers_under_test() {
       localized("FlatConeFarAway", Revolved{{2e3, 1e3, 0}, {0, -2, 0}, {{0, 0}, {3, 0.05}, {0, 0.6}}}),
       localized("Tube", Revolved{.profile = {{0.4, 0}, {1, 0}, {1, 1.6}, {0.4, 1.6}}}),
       localized("Hopper", Revolved{.profile = {{0, 0}, {0.2, 0}, {0.2, 0.2}, {1, 1}, {1, 2}, {0, 2}}}),
-      localized("ObliqueFlask", Revolved{{0, 0, 0},
-                                         {1, 1, 3},
-                                         {{0, 2}, {0.25, 2}, {0.3, 1.2}, {1, 0.6}, {0.9, 0}, {0, 0.2}}}),
+      localized(
+          "ObliqueFlask",
+          Revolved{{0, 0, 0}, {1, 1, 3}, {{0, 2}, {0.25, 2}, {0.3, 1.2}, {1, 0.6}, {0.9, 0}, {0, 0.2}}}),
       localized("CubeMesh", box_mesh({0, 0, 0}, {1, 1, 1})),
       localized("PrismMesh", prism_mesh(8, 1, 2)),
       localized("LShapeMeshFarAway", translated(l_shape_mesh(), {1e4, -2e4, 3e4})),

@@ -19,7 +19,8 @@ inline std::vector<std::filesystem::path> example_scenes() {
 /// The scene with at most `count` spheres, unless they are listed one by one: everything of it runs, in a
 /// blink.
 inline Scene small(Scene scene, std::int64_t count = 300) {
-  if (const ListedSizes* list = each_once(scene.sizes)) count = static_cast<std::int64_t>(list->values.size());
+  if (const ListedSizes* list = each_once(scene.sizes))
+    count = static_cast<std::int64_t>(list->values.size());
   // In a box that follows from both, its packing fraction goes with the count.
   const auto* its_box = std::get_if<PeriodicBox>(&scene.container);
   const bool scalable = its_box && its_box->scalable;

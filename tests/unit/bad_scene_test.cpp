@@ -173,7 +173,8 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
       {with_spheres("radius = { distribution = \"sieve\", sizes = [1, 2], passing = [0, 100], pan = 0.5 }"),
        3,
        {"\"pan\"", "there is none"}},
-      {with_spheres("radius = { distribution = \"sieve\", sizes = [2, 1, 0], retained = [0, 70, 30], pan = 1 }"),
+      {with_spheres(
+           "radius = { distribution = \"sieve\", sizes = [2, 1, 0], retained = [0, 70, 30], pan = 1 }"),
        3,
        {"\"pan\"", "1 is not below 1"}},
       {with_spheres("radius = { distribution = \"histogram\", edges = [1, 2], counts = [1, 1] }"),
@@ -200,23 +201,29 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
       {with_spheres("diameter = { distribution = \"percentiles\", d10 = 1, d50 = 3, d90 = 2 }"),
        3,
        {"\"d90\"", "above \"d50\"", "2 is not above 3"}},
-      {with_spheres("diameter = { distribution = \"percentiles\", d10 = 1, d90 = 2, law = \"rosin_rammler\" }"),
+      {with_spheres(
+           "diameter = { distribution = \"percentiles\", d10 = 1, d90 = 2, law = \"rosin_rammler\" }"),
        3,
        {"needs \"min\"", "1 % of this fit lies below 0.59"}},
-      {with_spheres("diameter = { distribution = \"percentiles\", d10 = 1, d90 = 2, law = \"through\", min = 1 }"),
+      {with_spheres(
+           "diameter = { distribution = \"percentiles\", d10 = 1, d90 = 2, law = \"through\", min = 1 }"),
        3,
        {"\"min\"", "below all percentiles"}},
       {with_spheres("diameter = { distribution = \"percentiles\", d10 = 1, d50 = 1.01, d90 = 100 }"),
        3,
        {"no lognormal law", "4.66", "\"d50\"", "\"through\""}},
-      {with_spheres("diameter = { distribution = \"percentiles\", d16 = \"0.9 phi\", d50 = \"1.5 phi\", d84 = "
-                    "\"2.1 phi\" }"),
+      {with_spheres(
+           "diameter = { distribution = \"percentiles\", d16 = \"0.9 phi\", d50 = \"1.5 phi\", d84 = "
+           "\"2.1 phi\" }"),
        3,
        {"above \"d16\"", "the larger number is the finer grain"}},
-      {with_spheres("radius = { distribution = \"sieve\", sizes = [2, 1], retained = [0, 1], passing = [100, 0] }"),
+      {with_spheres(
+           "radius = { distribution = \"sieve\", sizes = [2, 1], retained = [0, 1], passing = [100, 0] }"),
        3,
        {"\"passing\" and \"retained\""}},
-      {with_spheres("radius = { distribution = \"lognormal\", mean = 3, sd = 1e-20 }"), 3, {"\"sd\"", "1e-07"}},
+      {with_spheres("radius = { distribution = \"lognormal\", mean = 3, sd = 1e-20 }"),
+       3,
+       {"\"sd\"", "1e-07"}},
       {with_spheres("radius = { distribution = \"lognormal\", d10 = 3, d90 = 4 }"),
        3,
        {"\"d10\"", "distribution = \"percentiles\""}},
@@ -230,8 +237,9 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
       {with_spheres("radius = { distribution = \"list\", values = [1, 2] }\ndraw = \"random\""),
        4,
        {"\"random\"", "resample"}},
-      {with_spheres("radius = { distribution = \"mixture\", shares = [1, 1], of = [1, { distribution = \"list\", "
-                    "values = [1, 2] }] }"),
+      {with_spheres(
+           "radius = { distribution = \"mixture\", shares = [1, 1], of = [1, { distribution = \"list\", "
+           "values = [1, 2] }] }"),
        3,
        {"in a mixture", "resample"}},
       {with_spheres("radius = { distribution = \"list\", values = [1, 2], file = \"a.csv\" }"),
@@ -244,7 +252,8 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
                     "material_densities = [2500] }"),
        3,
        {"\"material_densities\"", "1 for 2"}},
-      {with_spheres("radius = { distribution = \"classes\", values = [1, 2], shares = [1, 2], names = [\"a\"] }"),
+      {with_spheres(
+           "radius = { distribution = \"classes\", values = [1, 2], shares = [1, 2], names = [\"a\"] }"),
        3,
        {"\"names\"", "one name for each", "1 for 2"}},
       {with_spheres("radius = { distribution = \"mixture\", of = [], shares = [1] }"),

@@ -11,7 +11,9 @@
 namespace bernal {
 namespace column_profile_test {
 
-double area_of_slices(double z) { return std::numbers::pi * z * z * (0.5 - z / 3); }  // of a ball of radius 1/2
+double area_of_slices(double z) {
+  return std::numbers::pi * z * z * (0.5 - z / 3);
+}  // of a ball of radius 1/2
 
 TEST(ColumnProfile, OfOneSphereOnTheFloorIsThatOfItsSlices) {
   Spheres<3> spheres;

@@ -25,7 +25,7 @@ struct Known {
   double density;
 };
 const Known known[] = {{"fcc", 12, std::numbers::pi / std::sqrt(18.0)},
-                       {"bcc", 8, std::numbers::pi * std::sqrt(3.0) / 8},
+                       {"bcc", 8, std::numbers::pi* std::sqrt(3.0) / 8},
                        {"hcp", 12, std::numbers::pi / std::sqrt(18.0)},
                        {"sc", 6, std::numbers::pi / 6}};
 
@@ -80,7 +80,8 @@ TEST(InsertCrystal, InABoxHasTheNeighboursOfItsName) {
 }
 
 TEST(InsertCrystal, OfABoxOfWholeDiametersTouchesAllItsWalls) {
-  const Packing packing = packed("kind = \"box\"\nsize = [10, 10, 10]\n", "fill = true\ndiameter = 1\n", "sc");
+  const Packing packing =
+      packed("kind = \"box\"\nsize = [10, 10, 10]\n", "fill = true\ndiameter = 1\n", "sc");
   EXPECT_EQ(packing.spheres.size(), 1000u);
   const Packing third = packed("kind = \"box\"\nsize = [10, 10, 10]\ncorner = [-3, 0.5, 7]\n",
                                "fill = true\ndiameter = 1.25\n", "sc");
@@ -90,9 +91,8 @@ TEST(InsertCrystal, OfABoxOfWholeDiametersTouchesAllItsWalls) {
 /// Where the planes of sites are no coordinates that the packer's unit has.
 TEST(InsertCrystal, LeavesNoPlaneOut) {
   for (const auto& [layout, sites] : {std::pair{"bcc", 2000.0}, std::pair{"fcc", 2048.0}}) {
-    const Packing packing =
-        packed("kind = \"box\"\nsize = [12, 12, 12]\ncorner = [0.1, 1.7, -3.3]\n",
-               "fill = true\ndiameter = 1\n", layout);
+    const Packing packing = packed("kind = \"box\"\nsize = [12, 12, 12]\ncorner = [0.1, 1.7, -3.3]\n",
+                                   "fill = true\ndiameter = 1\n", layout);
     for (int k = 0; k < 3; ++k) {
       std::vector<double> planes = packing.spheres.x[static_cast<std::size_t>(k)];
       std::ranges::sort(planes);
@@ -131,9 +131,10 @@ TEST(InsertCrystal, FillsAPeriodicBoxThatItDivides) {
 }
 
 TEST(InsertCrystal, RefusesPeriodsThatItDoesNotDivideAndNamesTheNearest) {
-  const std::string wrong = refusal("kind = \"periodic\"\nsize = [7.2, 7.2, 5.7]\n",
-                                    "fill = true\ndiameter = 1\n", "fcc");
-  EXPECT_NE(wrong.find("does not fit into periods of 7.2, 7.2, 5.7; it fits into 7.07106781"), std::string::npos)
+  const std::string wrong =
+      refusal("kind = \"periodic\"\nsize = [7.2, 7.2, 5.7]\n", "fill = true\ndiameter = 1\n", "fcc");
+  EXPECT_NE(wrong.find("does not fit into periods of 7.2, 7.2, 5.7; it fits into 7.07106781"),
+            std::string::npos)
       << wrong;
   // What is offered is accepted.
   const std::string offered = wrong.substr(wrong.find("into 7.07") + 5);
@@ -143,8 +144,9 @@ TEST(InsertCrystal, RefusesPeriodsThatItDoesNotDivideAndNamesTheNearest) {
                     "fill = true\ndiameter = 1\n", "sc")
                 .find("it fits into 9.0000000"),
             std::string::npos);
-  EXPECT_NE(refusal("kind = \"periodic\"\nedge = 9\n", "fill = true\ndiameter = 1\n", "random").find("layout"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal("kind = \"periodic\"\nedge = 9\n", "fill = true\ndiameter = 1\n", "random").find("layout"),
+      std::string::npos);
   EXPECT_NE(refusal("kind = \"periodic\"\n", "count = 32\ndiameter = 1\n", "fcc").find("size"),
             std::string::npos);
 }
@@ -163,7 +165,8 @@ TEST(InsertCrystal, IsRefusedBeforeItIsRun) {
 
 TEST(InsertCrystal, TakesASpacing) {
   const std::string spheres = "fill = true\ndiameter = 1\n";
-  const Packing wide = packed("kind = \"periodic\"\nsize = [6, 7.2, 8.4]\n", spheres, "sc", "spacing = 1.2\n");
+  const Packing wide =
+      packed("kind = \"periodic\"\nsize = [6, 7.2, 8.4]\n", spheres, "sc", "spacing = 1.2\n");
   EXPECT_EQ(wide.spheres.size(), 5u * 6 * 7);
   EXPECT_EQ(contact_sums(wide.spheres, wide.domain).coordination.front(), 0u);
   const Packing box = packed("kind = \"box\"\nsize = [9, 9, 9]\n", spheres, "bcc", "spacing = 1.3\n");
@@ -172,8 +175,9 @@ TEST(InsertCrystal, TakesASpacing) {
   EXPECT_NE(refusal("kind = \"box\"\nsize = [9, 9, 9]\n", spheres, "sc", "spacing = 0.9\n")
                 .find("less than the largest diameter"),
             std::string::npos);
-  EXPECT_NE(refusal("kind = \"box\"\nsize = [9, 9, 9]\n", spheres, "lattice", "spacing = 1.2\n").find("spacing"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal("kind = \"box\"\nsize = [9, 9, 9]\n", spheres, "lattice", "spacing = 1.2\n").find("spacing"),
+      std::string::npos);
 }
 
 TEST(InsertCrystal, LiesInRoundContainersAndBetweenWalls) {
@@ -190,8 +194,8 @@ TEST(InsertCrystal, LiesInRoundContainersAndBetweenWalls) {
         EXPECT_EQ(sums.coordination[i], k.neighbours);
       }
   }
-  const Packing slab = packed("kind = \"periodic\"\nsize = [6, 7, 8.4]\nwalls = [2]\n",
-                              "fill = true\ndiameter = 1\n", "sc");
+  const Packing slab =
+      packed("kind = \"periodic\"\nsize = [6, 7, 8.4]\nwalls = [2]\n", "fill = true\ndiameter = 1\n", "sc");
   EXPECT_EQ(slab.spheres.size(), 6u * 7 * 8);
 }
 
@@ -210,8 +214,8 @@ TEST(InsertCrystal, OfDiscsIsTheHexagonalOrTheSquareLattice) {
 
 TEST(InsertCrystal, HoldsSizesThatDifferBetweenWhatStandsThere) {
   const std::string box = "kind = \"box\"\nsize = [9, 9, 9]\n";
-  const Packing packing = packed(
-      box, "fill = true\ndiameter = { distribution = \"uniform\", min = 0.5, max = 1 }\n", "fcc");
+  const Packing packing =
+      packed(box, "fill = true\ndiameter = { distribution = \"uniform\", min = 0.5, max = 1 }\n", "fcc");
   EXPECT_EQ(packing.spheres.size(), 12u * 12 * 12 / 2);
 }
 

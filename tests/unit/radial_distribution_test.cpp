@@ -167,8 +167,8 @@ TEST(RadialDistribution, OfSpheresAboveTheLevelCountsNone) {
     for (const double g : found.g) sum += g > 0;
     return sum;
   };
-  const auto all = radial_distribution(spheres, box), bed = radial_distribution(
-      spheres, box, {.below = LowerPart{-Vector<3>::UnitZ(), 4}});
+  const auto all = radial_distribution(spheres, box),
+             bed = radial_distribution(spheres, box, {.below = LowerPart{-Vector<3>::UnitZ(), 4}});
   ASSERT_TRUE(all && bed);
   EXPECT_EQ(pairs(*all), 3);  // at 1, and from one pair to the other at 4.123 and 4.243
   EXPECT_EQ(pairs(*bed), 1);

@@ -116,8 +116,9 @@ TEST(Shapes, WhatTheyAreNotIsSaidInOneLine) {
   EXPECT_NE(error_with("kind = \"cone\"\nradii = [0, 0]\nheight = 1").find("not both 0"), std::string::npos);
   EXPECT_NE(error_with("kind = \"tube\"\nradius = 1\ninner_radius = 2\nheight = 1").find("below its radius"),
             std::string::npos);
-  EXPECT_NE(error_with("kind = \"revolved\"\nprofile = [[0, 0], [2, 2], [2, 0], [0, 2]]").find("meet at about"),
-            std::string::npos);
+  EXPECT_NE(
+      error_with("kind = \"revolved\"\nprofile = [[0, 0], [2, 2], [2, 0], [0, 2]]").find("meet at about"),
+      std::string::npos);
   EXPECT_NE(error_with("kind = \"revolved\"\nprofile = [[0, 0], [-2, 2], [0, 2]]").find("r >= 0"),
             std::string::npos);
   EXPECT_NE(error_with("kind = \"revolved\"").find("\"profile\""), std::string::npos);

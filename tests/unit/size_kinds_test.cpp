@@ -254,7 +254,9 @@ TEST(SizeArguments, AreRefusedWhereAbsurd) {
       [=] {
         make_histogram({1, 2, 3}, {1, nan}, Basis::number);
       },
-      [] { make_from_percentiles({{0.5, 1}}, PercentileLaw::lognormal, Basis::volume, 0, infinity); },
+      [] {
+        make_from_percentiles({{0.5, 1}}, PercentileLaw::lognormal, Basis::volume, 0, infinity);
+      },
       [] {
         make_from_percentiles({{0.1, 2}, {0.9, 1}}, PercentileLaw::lognormal, Basis::volume, 0, infinity);
       },

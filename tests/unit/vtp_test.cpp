@@ -80,8 +80,8 @@ TEST(Vtp, HasTheCoordinationOfEverySphere) {
   const Spheres<3> spheres = scattered(20, 0.1, 0.8, bounds_of(example_box), 5);
   std::vector<std::uint32_t> contacts;
   for (std::uint32_t i = 0; i < spheres.size(); ++i) contacts.push_back(i % 5);
-  const std::string vtp = text_of(written(
-      folder, "s.vtp", [&](OutputFile& file) { write_vtp(file, spheres, "mm", contacts); }));
+  const std::string vtp =
+      text_of(written(folder, "s.vtp", [&](OutputFile& file) { write_vtp(file, spheres, "mm", contacts); }));
   EXPECT_EQ(appended<std::int64_t>(vtp, "coordination", "Int64"),
             std::vector<std::int64_t>(contacts.begin(), contacts.end()));
   EXPECT_EQ(appended<double>(vtp, "radius", "Float64"), spheres.r);
@@ -95,8 +95,8 @@ TEST(Vtp, OfContactsIsALineBetweenTheCentres) {
   spheres.push_back({2.5, 2, 2}, 0.5);
   const ContactList contacts = contact_list(spheres, Box{Vector<3>::Zero(), Vector<3>(6, 6, 6)});
   ASSERT_EQ(contacts.size(), 2u);  // with the wall x = 0, and with each other
-  const std::string vtp = text_of(written(
-      folder, "c.vtp", [&](OutputFile& file) { write_contacts_vtp(file, contacts, spheres, "mm"); }));
+  const std::string vtp = text_of(
+      written(folder, "c.vtp", [&](OutputFile& file) { write_contacts_vtp(file, contacts, spheres, "mm"); }));
   EXPECT_EQ(appended<double>(vtp, "Points", "Float64"),
             (std::vector<double>{1, 2, 2, 0, 2, 2, 1, 2, 2, 2.5, 2, 2}));
   EXPECT_EQ(appended<std::int64_t>(vtp, "j", "Int64"), (std::vector<std::int64_t>{-1, 1}));

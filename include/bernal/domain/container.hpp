@@ -132,9 +132,9 @@ class Container {
   Boundary<3> boundary_;
 };
 
-/// The container of a box of two or three dimensions, cylinder, sphere, polygon or solid of revolution. Throws Error{bad_argument}
-/// for lengths that are not positive and finite, an axis without direction or a periodic one that is oblique,
-/// and for a mesh.
+/// The container of a box of two or three dimensions, cylinder, sphere, polygon or solid of revolution.
+/// Throws Error{bad_argument} for lengths that are not positive and finite, an axis without direction or a
+/// periodic one that is oblique, and for a mesh.
 std::unique_ptr<Container> make_analytic_container(const Domain&, WallArithmetic, double resolution);
 
 }  // namespace bernal

@@ -71,10 +71,10 @@ struct Polygon {
 /// Exact. Cost: O(n log n), and every pair of edges whose bounds overlap.
 void require_simple(const Polygon&);
 
-/// A solid of revolution: the points at the distance r from the axis line and the height z = (p - base)·a, with
-/// a = axis / |axis|, such that (r, z) lies in the polygon whose corners the profile names in their order, in
-/// either sense; the last is joined to the first. `axis` need not be of unit length. Edges on the axis are
-/// no walls. The distance of a point from the wall is that of its (r, z) from the other edges. See
+/// A solid of revolution: the points at the distance r from the axis line and the height z = (p - base)·a,
+/// with a = axis / |axis|, such that (r, z) lies in the polygon whose corners the profile names in their
+/// order, in either sense; the last is joined to the first. `axis` need not be of unit length. Edges on the
+/// axis are no walls. The distance of a point from the wall is that of its (r, z) from the other edges. See
 /// `require_profile`.
 struct Revolved {
   Vector<3> base = Vector<3>::Zero();
@@ -118,8 +118,8 @@ inline bool is_faceted(const Domain& domain) {
          std::holds_alternative<Revolved>(domain);
 }
 /// How many independent motions, shifts and turns, take the domain into itself for as far as they go: a shift
-/// along each axis that repeats itself, a turn about the axis of a cylinder or of a profile, three about a sphere's centre. A
-/// mesh or a polygon has none.
+/// along each axis that repeats itself, a turn about the axis of a cylinder or of a profile, three about a
+/// sphere's centre. A mesh or a polygon has none.
 int symmetries_of(const Domain&);
 
 /// Smallest axis-aligned bounds, to rounding; along an axis that repeats itself, one period. Precondition: D

@@ -19,8 +19,9 @@ namespace bernal {
 /// within R |
 ///
 /// A frustum is what the edge of a profile from (r, 0) to (s, h) is about its axis: a piece of a cone, of a
-/// cylinder from inside or from outside, a ring or a disc. A triangle without area, two of whose vertices are one, is a segment: an edge of a polygon. Its R is how
-/// far inside of it the wall stands, see `Mesh::inset`; 0 for most, and negative where it stands behind.
+/// cylinder from inside or from outside, a ring or a disc. A triangle without area, two of whose vertices are
+/// one, is a segment: an edge of a polygon. Its R is how far inside of it the wall stands, see `Mesh::inset`;
+/// 0 for most, and negative where it stands behind.
 struct Facet {
   using ArchivedAsBytes = void;
   enum class Kind : std::uint8_t { plane, cylinder, sphere, triangle, frustum };

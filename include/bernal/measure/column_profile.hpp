@@ -16,10 +16,10 @@ namespace bernal {
 /// The axis is that of a cylinder; the coordinate axis of a box that is nearest to the vertical; else the
 /// vertical. Heights along it are measured from the container's lowest point.
 struct ColumnProfile {
-  Vector<3> axis;            ///< of unit length, upwards
+  Vector<3> axis;  ///< of unit length, upwards
   double mean_diameter = 0;
-  double top = 0;            ///< height of the lid, or of a bed's level
-  bool has_lid = false;      ///< false: the spheres are a bed that ends at `top`
+  double top = 0;        ///< height of the lid, or of a bed's level
+  bool has_lid = false;  ///< false: the spheres are a bed that ends at `top`
 
   /// Slices from the floor up to the top, d/10 thick; that at a lid is thinner, that at a level reaches above
   /// it. The volumes of spheres and
@@ -51,8 +51,9 @@ struct ColumnOptions {
 };
 
 /// Absent without walls, in other than three dimensions, without spheres, and in containers that repeat
-/// themselves along their axis. Cost: O(N), O(triangles) a slice in a mesh, and that of `wall_profile` for the
-/// side. Precondition: options positive; down not 0.
-std::optional<ColumnProfile> column_profile(const Spheres<dynamic>&, const Domain&, const ColumnOptions& = {});
+/// themselves along their axis. Cost: O(N), O(triangles) a slice in a mesh, and that of `wall_profile` for
+/// the side. Precondition: options positive; down not 0.
+std::optional<ColumnProfile> column_profile(const Spheres<dynamic>&, const Domain&,
+                                            const ColumnOptions& = {});
 
 }  // namespace bernal

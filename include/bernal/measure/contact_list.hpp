@@ -11,16 +11,16 @@ namespace bernal {
 
 /// Which pairs are contacts: as `measure_contacts_across` has it.
 struct ContactOptions {
-  double contact_gap = 0.002;      ///< a gap ratio, see Contacts
-  double gap = 0, wall_gap = 0;    ///< what spheres keep from each other and from walls, a length
+  double contact_gap = 0.002;    ///< a gap ratio, see Contacts
+  double gap = 0, wall_gap = 0;  ///< what spheres keep from each other and from walls, a length
   std::shared_ptr<const Container> container = {};  ///< as `MeasureOptions::container`
 };
 
 /// All contacts of spheres, one by one: `Contacts::pairs` of them with each other and `Contacts::walls` with
 /// walls. Lengths are in the unit of the spheres.
 ///
-/// Sorted by i, then by j. A pair stands there once, with i < j; a sphere that touches its own image is i == j;
-/// two spheres that touch in several images stand there once for each of them.
+/// Sorted by i, then by j. A pair stands there once, with i < j; a sphere that touches its own image is i ==
+/// j; two spheres that touch in several images stand there once for each of them.
 struct ContactList {
   static constexpr std::int64_t wall = -1;
 
@@ -37,8 +37,8 @@ struct ContactList {
   std::size_t size() const { return i.size(); }
 };
 
-/// Cost: O(N + contacts log contacts), about 2 µs a sphere; 16 + 8 (1 + 2 D) bytes a contact, twice that on the
-/// way. Any dimension, size ratio and period; see `measure_contacts` for its precondition and errors.
+/// Cost: O(N + contacts log contacts), about 2 µs a sphere; 16 + 8 (1 + 2 D) bytes a contact, twice that on
+/// the way. Any dimension, size ratio and period; see `measure_contacts` for its precondition and errors.
 ContactList contact_list(const Spheres<dynamic>&, const Domain&, const ContactOptions& = {});
 
 /// What contacts add up to.

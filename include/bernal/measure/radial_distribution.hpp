@@ -19,8 +19,8 @@ namespace bernal {
 ///
 /// Between walls, only centres at least a mean diameter off every wall count, which leaves the layer at the
 /// walls out; or where those are fewer than half of all, every centre. V is the volume where such centres may
-/// be, and of every shell the share counts that lies there: so g of points at random is 1. Of a bed, V ends at
-/// its level.
+/// be, and of every shell the share counts that lies there: so g of points at random is 1. Of a bed, V ends
+/// at its level.
 struct RadialDistribution {
   double mean_diameter = 0;
   double bin_width = 0;   ///< w
@@ -46,10 +46,11 @@ struct RadialDistribution {
 
 struct RadialOptions {
   double bin = 0.02;  ///< of the mean diameter
-  double reach = 5;   ///< mean diameters; limited to half the shortest period, and between walls to `least_share`
+  double reach =
+      5;  ///< mean diameters; limited to half the shortest period, and between walls to `least_share`
   double work = 2e8;  ///< approximate number of distances computed; larger packings are sampled
-  /// Between walls: approximate number of places of which it is asked whether they are inside; a fifth of that
-  /// in a mesh.
+  /// Between walls: approximate number of places of which it is asked whether they are inside; a fifth of
+  /// that in a mesh.
   double places = 4e6;
   std::optional<LowerPart> below = {};  ///< between walls: the part that counts
 

@@ -49,7 +49,8 @@ struct StructureOptions {
 /// If a bin has too many wave vectors, some are chosen, spread evenly over the directions. Over random
 /// directions S scatters by as much as its value, so the error is the scatter in the bin (or S, for fewer
 /// than eight vectors) over the root of their number. The result is the same for any number of threads. Cost:
-/// N vectors at about 2 ns, for a million spheres 20 s of processor time; memory some MB. Precondition: bin and reach positive.
+/// N vectors at about 2 ns, for a million spheres 20 s of processor time; memory some MB. Precondition: bin
+/// and reach positive.
 std::optional<StructureFactor> structure_factor(const Spheres<dynamic>&, const Domain&,
                                                 const StructureOptions& = {});
 

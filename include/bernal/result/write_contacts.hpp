@@ -8,8 +8,8 @@ namespace bernal {
 
 /// All contacts in a file of the kind that its name ends in, lengths in the scene's unit:
 /// - .csv: "# unit: mm", the header "i,j,gap,nx,ny,nz,x,y,z" (in other than three dimensions
-///   "i,j,gap,n0,n1,…,x0,x1,…"), then one contact a line; i and j count from 0 in the order of spheres.csv, and
-///   j is -1 at a wall. Numbers read back to the bit.
+///   "i,j,gap,n0,n1,…,x0,x1,…"), then one contact a line; i and j count from 0 in the order of spheres.csv,
+///   and j is -1 at a wall. Numbers read back to the bit.
 /// - .npy: the same columns as doubles, a row for each contact.
 /// - .vtp: a line for each between the centres, or to the wall, with i, j, gap and normal; for ParaView.
 ///

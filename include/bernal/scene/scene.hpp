@@ -40,8 +40,8 @@ struct PeriodicBox {
 
 /// What is to be filled: `scene.container = Cylinder{.radius = 2, .height = 5}`. A box of two or three
 /// dimensions with walls all around is a Box; one that repeats itself is a PeriodicBox.
-struct SceneContainer : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon, Cone, Tube,
-                                      Lathed, Extruded> {
+struct SceneContainer
+    : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon, Cone, Tube, Lathed, Extruded> {
   using variant::variant;
   Locations locations;
 };

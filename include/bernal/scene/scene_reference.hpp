@@ -9,10 +9,10 @@ namespace bernal {
 
 /// A key of a scene: what `bernal keys` says of it, as data.
 struct ReferenceKey {
-  std::string name;         ///< "alpha"
-  std::string help;         ///< what it is, in a phrase
-  std::string type;         ///< "flag", "integer", "number", "length", "word", …
-  std::string expectation;  ///< what its value must be, for people: "a positive length"
+  std::string name;                           ///< "alpha"
+  std::string help;                           ///< what it is, in a phrase
+  std::string type;                           ///< "flag", "integer", "number", "length", "word", …
+  std::string expectation;                    ///< what its value must be, for people: "a positive length"
   std::optional<std::string> otherwise = {};  ///< its default, as TOML; none where it may simply be absent
   double min = -std::numeric_limits<double>::infinity();  ///< of numbers and integers
   double max = std::numeric_limits<double>::infinity();
@@ -40,7 +40,8 @@ struct ReferenceTable {
 
 /// Tables of which one is chosen by a word, or that all may be there.
 struct ReferenceGroup {
-  std::string name;      ///< where it stands: "container", "stage", "output", "engine"; "diameter" of sizes; "scene"
+  std::string
+      name;  ///< where it stands: "container", "stage", "output", "engine"; "diameter" of sizes; "scene"
   std::string selector;  ///< the key whose word chooses: "kind", "distribution", "do", "format"; empty: none
   std::string title;     ///< for people
   std::vector<ReferenceTable> tables;

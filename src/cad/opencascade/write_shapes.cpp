@@ -163,8 +163,8 @@ struct ContainerShape {
     const gp_Ax2 frame(point_at(revolved.base), direction_of(revolved.axis));
     BRepBuilderAPI_MakePolygon profile;
     for (const Vector<2>& p : revolved.profile)
-      profile.Add(gp_Pnt(frame.Location().XYZ() + p[0] * frame.XDirection().XYZ() +
-                         p[1] * frame.Direction().XYZ()));
+      profile.Add(
+          gp_Pnt(frame.Location().XYZ() + p[0] * frame.XDirection().XYZ() + p[1] * frame.Direction().XYZ()));
     profile.Close();
     BRepBuilderAPI_MakeFace face(profile.Wire(), true);
     if (!face.IsDone()) throw Failed{"OpenCASCADE makes no face of the container's profile"};
