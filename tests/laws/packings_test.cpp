@@ -108,7 +108,7 @@ TEST_P(EveryPacking, StaysCertifiedAtAnyScaleAndFarAway) {
                   testing::shifted(GetParam().plan(), far)};
   for (const Plan& plan : plans) {
     const Packing packing = run_with(plan);
-    EXPECT_GT(packing.spheres.size(), 50u);
+    EXPECT_GE(packing.spheres.size(), 40u);
     expect_certified(packing);
   }
 }
