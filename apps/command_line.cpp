@@ -5,11 +5,16 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <memory>
+#include <set>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "bernal/core/error.hpp"
@@ -24,6 +29,20 @@ const CLI::App& asked_for(const CLI::App& app) {
   const auto commands = app.get_subcommands();
   return commands.empty() ? app : asked_for(*commands.front());
 }
+
+/// CLI11 keeps what an option excludes in the order of addresses, which differs from run to run.
+class InOneOrder : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string text = CLI::Formatter::make_option_opts(option),
+                      label = " " + get_label("Excludes") + ":";
+    const auto found = text.find(label);  // what follows are names, to the end
+    if (found == std::string::npos) return text;
+    std::istringstream listed(text.substr(found + label.size()));
+    const std::set<std::string> names{std::istream_iterator<std::string>(listed), {}};
+    return fmt::format("{}{} {}", text.substr(0, found), label, fmt::join(names, " "));
+  }
+};
 
 /// "bernal design target".
 std::string whole_name(const CLI::App& app) {
@@ -105,6 +124,7 @@ std::optional<std::uint64_t> parse_seed(const std::string& text) {
 int run_command_line(int argc, char** argv, const Command& bernal, const std::string& version) {
   int status = 0;
   CLI::App app{bernal.what, bernal.name};
+  app.formatter(std::make_shared<InOneOrder>());
   app.set_version_flag("--version", version);
   add(app, bernal, status);
   const std::vector<std::string> words(argv + 1, argv + argc);

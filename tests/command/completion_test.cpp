@@ -80,7 +80,7 @@ TEST(Completion, BashOffersFilesOfTheKindThatIsAskedFor) {
   const Bash bash;
   EXPECT_EQ(bash.offers({"pack", ""}), (Words{"a folder", "bed.toml", "part.stl", "PART.STEP"}));
   EXPECT_EQ(bash.offers({"pack", "--quiet", "P"}), Words{"PART.STEP"});
-  EXPECT_EQ(bash.offers({"explain", ""}), (Words{"a folder", "bed.toml"}));
+  EXPECT_EQ(bash.offers({"explain", ""}), (Words{"a folder", "bed.toml", "part.stl", "PART.STEP"}));
   EXPECT_EQ(bash.offers({"inspect", ""}), (Words{"a folder", "part.stl", "PART.STEP"}));
   EXPECT_EQ(bash.offers({"verify", ""}), (Words{"a folder", "bed.csv"}));
   EXPECT_EQ(bash.offers({"measure", ""}), Words{"a folder"});

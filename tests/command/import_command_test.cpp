@@ -102,8 +102,8 @@ TEST(ImportCommand, ItsSceneFreesTheSpheresWhereTheyAre) {
 TEST(ImportCommand, HelpListsEveryFormat) {
   const std::string help = bernal({"import", "--help"}).out;
   const auto in_words = [](const std::string& text) {
-    return with_options(
-        text, [](std::string_view name, std::string_view) { return "--" + std::string(name); });
+    return with_options(text,
+                        [](std::string_view name, std::string_view) { return "--" + std::string(name); });
   };
   for (const ImportFormat& format : import_formats()) {
     const std::size_t at = help.find("\n  " + format.name + " ");

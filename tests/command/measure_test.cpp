@@ -35,7 +35,7 @@ TEST_F(Measure, TellsWhatStandsInTheFiles) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(ended.err, "");
   for (const std::string part :
-       {"spheres           2, in a periodic box of 4 x 2 mm", "packing fraction  0.785398",
+       {"discs             2, in a periodic box of 4 x 2 mm", "packing fraction  0.785398",
         "coordination      4.0000", "contacts          4 pairs", "diameter in mm"})
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\nis not in\n" << ended.out;
 }

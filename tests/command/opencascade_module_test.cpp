@@ -25,7 +25,8 @@ class ModuleOfOpenCascade : public ::testing::Test {
   void SetUp() override {
     if (!fs::exists(module)) GTEST_SKIP() << "built without OpenCASCADE";
     fs::copy(command, folder_ / "bernal");
-    if (reads_step(folder_ / "bernal", folder_.path())) GTEST_SKIP() << "a module is installed on this machine";
+    if (reads_step(folder_ / "bernal", folder_.path()))
+      GTEST_SKIP() << "a module is installed on this machine";
   }
 
   Folder folder_;

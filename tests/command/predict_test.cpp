@@ -133,7 +133,7 @@ TEST(PredictCommand, RefusesAbsurdInputInOneLine) {
       {{"--lognormal", "0.5", "--intrinsic", "3"}, "--solids"},
       // Of the packing's scene, which the user never saw, no line is named.
       {{"--lognormal", "0.5", "--check", "--stage", "shuffle"}, "bernal: unknown stage"},
-      {{"--lognormal", "0.5", "--check", "--stage", "insert"}, "bernal: \"insert\""},
+      {{"--lognormal", "0.5", "--check", "--stage", "insert"}, "bernal: \"layout\" in [[stage]] insert"},
       {{"--wide", "1"}, "bernal predict --help"},
       {{"--stdin", "x"}, "stdin"},
       {{"--stdin", "d"}, "no population"},
