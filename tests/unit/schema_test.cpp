@@ -33,7 +33,7 @@ std::string sample(const Key& key, int choice) {
   // Of a sieve with a pan: nothing lies on the coarsest.
   if (key.name == "sizes") return "[1, 2, 0]";
   if (key.name == "retained") return "[25.5, 0, 30]";
-  if (key.name == "spacing") return "2.5";  // of crystals: no less than the spheres are wide
+  if (key.name == "spacing") return "3";  // as that does, and no less than the spheres are wide
   if (key.name == "edges") return "[0.3, 1, 2, 1e3]";
   if (key.type == Type::length && key.is_diameter && key.name != "d43" && key.name != "d32")
     return fmt::format("10.{:0>2}", key.name.substr(1));  // D10 = 10.10, and so on: they ascend, near any law
@@ -114,7 +114,7 @@ std::string sample_of(const Entry& entry, const Key& key, int choice) {
       return choice == 0 ? "\"mine.x\"" : "'a \"b\" \\c'";
   // With which every other key acts.
   if (key.name == "top") return "\"heap\"";
-  if (key.name == "layout") return choice == 0 ? "\"hcp\"" : "\"sc\"";
+  if (key.name == "layout") return "\"sc\"";  // which fits into the periods of 9
   for (const OutputTable* format : output_tables())
     if (&format->keys == &entry && key.name == "contact")
       return format->solids ? "\"bridge\"" : choice == 0 ? "\"gap\"" : "\"shrink\"";
