@@ -141,8 +141,7 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
   if (!radial->share.empty())
     fmt::print(
         "between walls: by the share of each shell that lies off the walls{}; standard error from a diameter "
-        "on up to "
-        "{:.2g}\n",
+        "on up to {:.2g}\n",
         part_of_bed(packing, bed), largest_error(*radial));
   print_chart(radial->g, 3, 3, fmt::format("{:.3g} diameters", reach));
   for (const auto& peak : radial->peaks)

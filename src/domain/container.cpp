@@ -94,18 +94,10 @@ double Container::first_contact(const Vector<3>& c, double r, const Vector<3>& d
 }
 
 double Container::free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const {
-  const double speed = direction.stableNorm() * (1 + 8 * tolerance::roundoff);
-  if (!(speed > 0)) return contains(c, r) ? limit : 0;
-  const double reach = r + free_path_bound(c, r);
-  thread_local std::vector<NearFacet> near;
-  near.clear();
-  facets_near(c, reach + limit * speed, near);
-  Motion motion{c, r, direction, limit};
-  for (const NearFacet& n : near) {
-    if (n.distance - reach >= motion.limit * speed) break;
-    motion.limit = bernal::free_path(n.facet, motion, arithmetic_);
-  }
-  return motion.limit;
+  if (!(direction.stableNorm() > 0)) return contains(c, r) ? limit : 0;
+  return free_path_among_near(*this, {c, r, direction, limit}, [&](const Facet& facet, const Motion& motion) {
+    return bernal::free_path(facet, motion, arithmetic_);
+  });
 }
 
 double Container::free_path_bound(const Vector<3>& c, double r) const {

@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <vector>
 
 #include "bernal/core/tolerance.hpp"
 #include "bernal/domain/container.hpp"
@@ -34,6 +35,22 @@ double free_path(const AnalyticWall& wall, const Motion& motion, WallArithmetic 
 /// The least of them, each asked only as far as the ones before allow.
 double free_path(std::span<const AnalyticWall> walls, const Motion& motion, WallArithmetic arithmetic);
 double free_path(const Facet& facet, const Motion& motion, WallArithmetic arithmetic);
+
+/// The same of walls that a container says are near, with `way_to(facet, motion)` for each, of which the
+/// motion reaches only as far as the ones before allow. Precondition: a direction that is not zero.
+template <class Way>
+double free_path_among_near(const Container& walls, Motion motion, const Way& way_to) {
+  const double speed = motion.direction.stableNorm() * (1 + 8 * tolerance::roundoff);
+  const double reach = motion.r + walls.free_path_bound(motion.c, motion.r);
+  thread_local std::vector<NearFacet> near;
+  near.clear();
+  walls.facets_near(motion.c, reach + motion.limit * speed, near);
+  for (const NearFacet& n : near) {
+    if (n.distance - reach >= motion.limit * speed) break;
+    motion.limit = way_to(n.facet, motion);
+  }
+  return motion.limit;
+}
 
 /// A bound of the error of a distance as kernels/first_contact.hpp computes it for a ball on its way, in
 /// terms of S, the sum of L and the largest coordinate.

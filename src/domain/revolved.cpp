@@ -61,19 +61,12 @@ class RevolvedContainer final : public Container {
   }
 
   double free_path(const Vector<3>& c, double r, const Vector<3>& direction, double limit) const override {
-    const double speed = direction.stableNorm() * (1 + 8 * tolerance::roundoff);
-    if (arithmetic() == WallArithmetic::plain || !(speed > 0))
+    if (arithmetic() == WallArithmetic::plain || !(direction.stableNorm() > 0))
       return Container::free_path(c, r, direction, limit);
-    const double reach = r + free_path_bound(c, r);
-    thread_local std::vector<NearFacet> near;
-    near.clear();
-    facets_near(c, reach + limit * speed, near);
-    Motion motion{c, r, direction, limit};
-    for (const NearFacet& n : near) {
-      if (n.distance - reach >= motion.limit * speed) break;
-      motion.limit = bernal::free_path(edges_[n.facet.id], motion, arithmetic());
-    }
-    return motion.limit;
+    return free_path_among_near(*this, {c, r, direction, limit},
+                                [&](const Facet& facet, const Motion& motion) {
+                                  return bernal::free_path(edges_[facet.id], motion, arithmetic());
+                                });
   }
 
   void facets_near(const Vector<3>& c, double reach, std::vector<NearFacet>& out) const override {

@@ -112,8 +112,7 @@ std::string hint_of_pan(const Plan& plan) {
   const double scale = plan.scene.scale;
   return fmt::format(
       "the {:.3g} % in the pan are taken to be {:.4g} to {:.4g} {}, from half of the finest sieve on; "
-      "\"pan\" "
-      "says how fine they are",
+      "\"pan\" says how fine they are",
       100 * curve.in_pan, scale * curve.pan, scale * curve.openings[1], name_of(plan.scene.unit));
 }
 
@@ -125,8 +124,7 @@ std::string hint_of_ends(const Plan& plan) {
   const double scale = plan.scene.scale;
   return fmt::format(
       "the sizes are taken to end at {:.4g} and {:.4g} {}, where the curve through the outermost percentiles "
-      "goes "
-      "on straight; \"min\" and \"max\" say where",
+      "goes on straight; \"min\" and \"max\" say where",
       scale * curve.front().size, scale * curve.back().size, name_of(plan.scene.unit));
 }
 

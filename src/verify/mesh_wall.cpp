@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "bernal/core/error.hpp"
+#include "verify/segment.hpp"
 
 namespace bernal::verify {
 namespace {
@@ -108,19 +109,11 @@ void check_closed(const Mesh& mesh) {
                     unpaired));
 }
 
-double distance_from_segment(const Vector<3>& p, const Vector<3>& a, const Vector<3>& b) {
-  const Vector<3> along = b - a, to_p = p - a;
-  const double squared = along.squaredNorm();
-  const double t = squared > 0 ? std::clamp(to_p.dot(along) / squared, 0.0, 1.0) : 0.0;
-  const Vector<3> rest = to_p - t * along;
-  return std::hypot(rest[0], rest[1], rest[2]);
-}
-
 /// In double, to a few roundoffs of the triangle's size. The least of the three segments and, if p projects
 /// inside, the plane: so a wrong guess of the region is harmless, even on needles.
 double distance_from_triangle(const Vector<3>& p, const Corners& v) {
   double best = Box<3>::infinity;
-  for (int k = 0; k < 3; ++k) best = std::min(best, distance_from_segment(p, v[k], v[(k + 1) % 3]));
+  for (int k = 0; k < 3; ++k) best = std::min(best, distance_from_segment<3>(p, v[k], v[(k + 1) % 3]));
   const Vector<3> normal = (v[1] - v[0]).cross(v[2] - v[0]);
   const double length = normal.norm();
   bool inside = length > 0;

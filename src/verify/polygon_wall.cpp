@@ -7,31 +7,11 @@
 #include "verify/space.hpp"
 
 namespace bernal::verify {
-namespace {
-
-double distance_from_edge(const Vector<2>& p, const Vector<2>& a, const Vector<2>& b) {
-  const Vector<2> along = b - a, to_p = p - a;
-  const double squared = along.squaredNorm();
-  const double t = squared > 0 ? std::clamp(to_p.dot(along) / squared, 0.0, 1.0) : 0.0;
-  const Vector<2> rest = to_p - t * along;
-  return std::hypot(rest[0], rest[1]);
-}
-
-}  // namespace
-
-Box<2> PolygonWall::Edge::box() const {
-  Box<2> box;
-  for (int k = 0; k < 2; ++k) {
-    box.lower[k] = std::min(a[k], b[k]);
-    box.upper[k] = std::max(a[k], b[k]);
-  }
-  return box;
-}
 
 PolygonWall::PolygonWall(const Polygon& polygon) : edges_(edges_of(polygon)) {}
 
-std::vector<PolygonWall::Edge> PolygonWall::edges_of(const Polygon& polygon) {
-  std::vector<Edge> edges;
+std::vector<PlaneEdge> PolygonWall::edges_of(const Polygon& polygon) {
+  std::vector<PlaneEdge> edges;
   for (const auto& loop : polygon.loops) {
     for (std::size_t k = 0; k < loop.size(); ++k) {
       require(loop[k].allFinite(), "a polygon needs finite corners");
@@ -47,19 +27,20 @@ WallState PolygonWall::wall_state_of(const Ball<2>& ball, const CertifyOptions& 
   const Reach reach{ball.r, options.wall_gap};
   bool clear = true;
   double distance = Box<2>::infinity;
-  edges_.for_each_touching(widened(ball.box(), wall_distances_known_up_to(options)), [&](const Edge& edge) {
-    ++tally.walls;
-    clear &= decide(arithmetic, tally.decisions, [&]<class Number>() {
-               return ball_clears_edge<Number>(ball.c, reach, edge.a, edge.b);
-             }) == Truth::yes;
-    distance = std::min(distance, distance_from_edge(ball.c, edge.a, edge.b));
-  });
+  edges_.for_each_touching(widened(ball.box(), wall_distances_known_up_to(options)),
+                           [&](const PlaneEdge& edge) {
+                             ++tally.walls;
+                             clear &= decide(arithmetic, tally.decisions, [&]<class Number>() {
+                                        return ball_clears_edge<Number>(ball.c, reach, edge.a, edge.b);
+                                      }) == Truth::yes;
+                             distance = std::min(distance, distance_from_segment<2>(ball.c, edge.a, edge.b));
+                           });
 
   const bool inside = center_inside(ball, arithmetic, tally);
   if (!inside) {
     distance = Box<2>::infinity;
-    for (const Edge& edge : edges_.items())
-      distance = std::min(distance, distance_from_edge(ball.c, edge.a, edge.b));
+    for (const PlaneEdge& edge : edges_.items())
+      distance = std::min(distance, distance_from_segment<2>(ball.c, edge.a, edge.b));
     distance = -distance;
   }
   const bool holds = inside && clear;
@@ -72,7 +53,7 @@ bool PolygonWall::center_inside(const Ball<2>& ball, Arithmetic arithmetic, Tall
   const Box<2> to_the_right{{ball.c[0], ball.c[1]}, {Box<2>::infinity, ball.c[1]}};
   bool odd = false;
   Decisions crossings;
-  edges_.for_each_touching(to_the_right, [&](const Edge& edge) {
+  edges_.for_each_touching(to_the_right, [&](const PlaneEdge& edge) {
     odd ^= decide(arithmetic, crossings, [&]<class Number>() {
              return crossing_to_the_right<Number>(ball.c, edge.a, edge.b);
            }) == Truth::yes;

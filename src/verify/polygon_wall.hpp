@@ -2,6 +2,7 @@
 #include "bernal/domain/domain.hpp"
 #include "verify/ball.hpp"
 #include "verify/box_tree.hpp"
+#include "verify/segment.hpp"
 #include "verify/tally.hpp"
 
 namespace bernal::verify {
@@ -19,17 +20,10 @@ class PolygonWall {
   WallState wall_state_of(const Ball<2>& ball, const CertifyOptions& options, Tally& tally) const;
 
  private:
-  struct Edge {
-    Vector<2> a, b;
-
-    Box<2> box() const;
-    double center(int axis) const { return 0.5 * a[axis] + 0.5 * b[axis]; }
-  };
-
-  static std::vector<Edge> edges_of(const Polygon& polygon);
+  static std::vector<PlaneEdge> edges_of(const Polygon& polygon);
   bool center_inside(const Ball<2>& ball, Arithmetic arithmetic, Tally& tally) const;
 
-  BoxTree<Edge, 2> edges_;
+  BoxTree<PlaneEdge, 2> edges_;
 };
 
 }  // namespace bernal::verify

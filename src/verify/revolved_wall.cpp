@@ -103,34 +103,17 @@ Truth crossing_outwards(const Vector<3>& c, const Revolved& solid, const Vector<
   return b[1] > a[1] ? is_negative(side) : is_positive(side);
 }
 
-double distance_from_segment(const Vector<2>& p, const Vector<2>& a, const Vector<2>& b) {
-  const Vector<2> along = b - a, to_p = p - a;
-  const double squared = along.squaredNorm();
-  const double t = squared > 0 ? std::clamp(to_p.dot(along) / squared, 0.0, 1.0) : 0.0;
-  const Vector<2> rest = to_p - t * along;
-  return std::hypot(rest[0], rest[1]);
-}
-
 }  // namespace
-
-Box<2> RevolvedWall::Edge::box() const {
-  Box<2> box;
-  for (int k = 0; k < 2; ++k) {
-    box.lower[k] = std::min(a[k], b[k]);
-    box.upper[k] = std::max(a[k], b[k]);
-  }
-  return box;
-}
 
 RevolvedWall::RevolvedWall(const Revolved& solid)
     : solid_(solid), unit_axis_(solid.axis.stableNormalized()), edges_(edges_of(solid)) {
   for (const Vector<2>& p : solid.profile) extent_ = std::max(extent_, p.cwiseAbs().maxCoeff());
 }
 
-std::vector<RevolvedWall::Edge> RevolvedWall::edges_of(const Revolved& solid) {
+std::vector<PlaneEdge> RevolvedWall::edges_of(const Revolved& solid) {
   require(solid.base.allFinite() && solid.axis.allFinite() && !solid.axis.isZero(0),
           "a solid of revolution needs a finite base and an axis that is finite and not zero");
-  std::vector<Edge> edges;
+  std::vector<PlaneEdge> edges;
   const std::size_t n = solid.profile.size();
   for (std::size_t k = 0; k < n; ++k) {
     const Vector<2>&a = solid.profile[k], &b = solid.profile[(k + 1) % n];
@@ -154,7 +137,7 @@ WallState RevolvedWall::wall_state_of(const Ball<3>& ball, const CertifyOptions&
   bool clear = true;
   // At least the nearest edge is decided, so that the gap of every ball is known.
   const double looked = std::max(ball.r + wall_distances_known_up_to(options), distance_to_nearest);
-  edges_.for_each_touching(widened(around, rounded_up(looked)), [&](const Edge& edge) {
+  edges_.for_each_touching(widened(around, rounded_up(looked)), [&](const PlaneEdge& edge) {
     ++tally.walls;
     clear &= decide(arithmetic, tally.decisions, [&]<class Number>() {
                return ball_clears_swept_edge<Number>(ball.c, reach, solid_, edge.a, edge.b);
@@ -173,8 +156,8 @@ WallState RevolvedWall::wall_state_of(const Ball<3>& ball, const CertifyOptions&
 double RevolvedWall::distance_from_nearest(const Vector<2>& place, const Box<2>& around, double first) const {
   double nearest = Box<2>::infinity;
   for (double looked = first;; looked = nearest < Box<2>::infinity ? nearest : 4 * looked) {
-    edges_.for_each_touching(widened(around, rounded_up(looked)), [&](const Edge& edge) {
-      nearest = std::min(nearest, distance_from_segment(place, edge.a, edge.b));
+    edges_.for_each_touching(widened(around, rounded_up(looked)), [&](const PlaneEdge& edge) {
+      nearest = std::min(nearest, distance_from_segment<2>(place, edge.a, edge.b));
     });
     if (nearest <= looked) return nearest;
   }
@@ -185,7 +168,7 @@ bool RevolvedWall::center_inside(const Ball<3>& ball, const Box<2>& place, Arith
   const Box<2> outwards{{place.lower[0], place.lower[1]}, {Box<2>::infinity, place.upper[1]}};
   bool odd = false;
   Decisions crossings;
-  edges_.for_each_touching(outwards, [&](const Edge& edge) {
+  edges_.for_each_touching(outwards, [&](const PlaneEdge& edge) {
     odd ^= decide(arithmetic, crossings, [&]<class Number>() {
              return crossing_outwards<Number>(ball.c, solid_, edge.a, edge.b);
            }) == Truth::yes;

@@ -2,6 +2,7 @@
 #include "bernal/domain/domain.hpp"
 #include "verify/ball.hpp"
 #include "verify/box_tree.hpp"
+#include "verify/segment.hpp"
 #include "verify/tally.hpp"
 
 namespace bernal::verify {
@@ -18,21 +19,14 @@ class RevolvedWall {
   WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const;
 
  private:
-  struct Edge {
-    Vector<2> a, b;
-
-    Box<2> box() const;
-    double center(int axis) const { return 0.5 * a[axis] + 0.5 * b[axis]; }
-  };
-
-  static std::vector<Edge> edges_of(const Revolved& solid);
+  static std::vector<PlaneEdge> edges_of(const Revolved& solid);
   double distance_from_nearest(const Vector<2>& place, const Box<2>& around, double first) const;
   bool center_inside(const Ball<3>& ball, const Box<2>& place, Arithmetic arithmetic, Tally& tally) const;
 
   const Revolved& solid_;
   Vector<3> unit_axis_;
   double extent_ = 0;
-  BoxTree<Edge, 2> edges_;
+  BoxTree<PlaneEdge, 2> edges_;
 };
 
 }  // namespace bernal::verify
