@@ -1,5 +1,6 @@
 #include "domain/rounded.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -46,9 +47,10 @@ Mesh rounded(const Box& box, double rounding) {
   const auto wall = [&](const Vector<3>& direction, const std::array<bool, 3>& sides) {
     Vector<3> p;
     for (int k = 0; k < 3; ++k) {
-      const double lower = box.corner[k], depth = rounding * (1 - std::abs(direction[k]));
-      p[k] =
-          sides[static_cast<std::size_t>(k)] ? sum_rounded_down(lower, box.size[k]) - depth : lower + depth;
+      const double lower = box.corner[k], upper = sum_rounded_down(lower, box.size[k]);
+      const double depth = rounding * (1 - std::abs(direction[k])), middle = 0.5 * (lower + upper);
+      p[k] = sides[static_cast<std::size_t>(k)] ? std::max(upper - depth, middle)
+                                                : std::min(lower + depth, middle);
     }
     return p;
   };

@@ -141,11 +141,12 @@ TEST(Obstacles, APipeOfAFileAcrossACylinderIsPackedAroundAndCertifiedFromTheFile
 }
 
 TEST(Obstacles, AreWrittenAsTheyWereRead) {
-  for (const std::string& container :
-       {cylinder + across, cylinder + "rounding = 2\n" + across,
-        "kind = \"mesh\"\nfile = \"a.stl\"\nobstacles = [\"b.stl\", { kind = \"cone\", radii = [1, 0], "
-        "height = 2 }]",
-        std::string("kind = \"box\"\nsize = [4, 5, 6]\nrounding = \"1 mm\"\n")}) {
+  const std::vector<std::string> containers = {
+      cylinder + across, cylinder + "rounding = 2\n" + across,
+      "kind = \"mesh\"\nfile = \"a.stl\"\nobstacles = [\"b.stl\", { kind = \"cone\", radii = [1, 0], "
+      "height = 2 }]",
+      "kind = \"box\"\nsize = [4, 5, 6]\nrounding = \"1 mm\"\n"};
+  for (const std::string& container : containers) {
     const Scene scene = parse_scene(scene_with(container), "/s.toml");
     const std::string text = scene_as_toml(scene);
     EXPECT_EQ(scene_as_toml(parse_scene(text, "/s.toml")), text);
