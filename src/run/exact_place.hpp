@@ -2,7 +2,6 @@
 #include <memory>
 #include <optional>
 #include <vector>
-#include <vector>
 
 #include "bernal/core/vector.hpp"
 #include "bernal/domain/container.hpp"
