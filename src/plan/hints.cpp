@@ -13,6 +13,7 @@
 #include "bernal/settle/insert.hpp"
 #include "bernal/sizes/percentiles.hpp"
 #include "plan/estimate.hpp"
+#include "scene/porosity.hpp"
 #include "scene/size_kinds.hpp"
 #include "sizes/volume_carriers.hpp"
 
@@ -78,6 +79,16 @@ std::string hint_of_shares(const Plan& plan) {
       "shares {:.3g} count spheres; by mass they are {:.3g}; say basis = \"volume\" where shares of "
       "the mass are meant",
       fmt::join(by_number, " : "), fmt::join(by_mass, " : "));
+}
+
+/// Of spheres lighter than any solid is.
+std::string hint_of_density(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  const auto* classes = std::get_if<Classes>(&scene.sizes);
+  if (classes && !classes->material_densities.empty())
+    return doubt_of_density("material_densities", std::ranges::max(classes->material_densities));
+  return scene.material_density ? doubt_of_density("material_density", *scene.material_density)
+                                : std::string();
 }
 
 /// Of sizes with a basis, of which the scene's text says none; classes have their own hint, and percentiles
@@ -149,8 +160,9 @@ std::string hint_of_crystal(const Plan& plan) {
 
 std::vector<std::string> hints_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan),
-                           hint_of_basis(plan), hint_of_pan(plan), hint_of_ends(plan), hint_of_crystal(plan)})
+  for (std::string hint :
+       {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan), hint_of_density(plan),
+        hint_of_basis(plan), hint_of_pan(plan), hint_of_ends(plan), hint_of_crystal(plan)})
     if (!hint.empty()) all.push_back(std::move(hint));
   return all;
 }

@@ -119,6 +119,8 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
                                                                    : key.type);
   if (const auto text = measured_text(key.quantity); text && key.type == "number")
     value = either(std::move(value), *text);
+  else if (text && key.type == "shares")
+    value = array_of(either(refers_to("positive"), *text), 1);
   if (key.words.empty()) return value;
   const SceneSchema word = one_of_words(key);
   if (key.type == "names") return {{"anyOf", {word, array_of(word, 1)}}};

@@ -51,6 +51,8 @@ class Search {
     Packing packing = std::move(*best_);
     packing.outcome = stopped_ ? Outcome::cancelled : Outcome::converged;
     packing.reason = in_words(packing);
+    packing.caution = plan_.caution;  // those of the last of its runs are of a size that nobody asked for
+    packing.hints = plan_.hints;
     packing.effects.push_back({"search", runs_, watch_.seconds()});
     packing.seconds = watch_.seconds();
     return packing;

@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "bernal/core/text.hpp"
+#include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
 #include "scene/read_columns.hpp"
 #include "scene/read_value.hpp"
@@ -101,7 +102,7 @@ class Reader {
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
     schema::hold(scene.container,
-                 choose(table, "kind", names_of(schema::container_entries()), "[container]"));
+                 choose(table, "kind", words_of(schema::container_entries()), "[container]"));
     read(table, schema::entry_of(scene.container), "kind", "[container]", schema::options_of(scene.container),
          scene.container.locations);
     auto* mesh = std::get_if<MeshFile>(&scene.container);
@@ -117,7 +118,7 @@ class Reader {
     if (!root.contains("engine")) return;
     const toml::table& table = table_in(root, "engine");
     SceneEngine& engine = scene.engine.emplace();
-    schema::hold(engine, choose(table, "kind", names_of(schema::engine_entries()), "[engine]"));
+    schema::hold(engine, choose(table, "kind", words_of(schema::engine_entries()), "[engine]"));
     engine.locations.keys["kind"] = at(table.find("kind")->first.source());
     read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
   }
@@ -148,11 +149,9 @@ class Reader {
   void read_stages(const toml::table& root, Scene& scene) const {
     const toml::array* stages = tables_in(root, "stage");
     if (!stages) return;
-    Names names;
-    for (const StageTable* stage : stage_tables()) names.push_back(stage->name());
     for (const toml::node& item : *stages) {
       const toml::table& table = *item.as_table();
-      const StageTable& stage = *stage_tables()[choose(table, "do", names, "[[stage]]")];
+      const StageTable& stage = *stage_tables()[choose(table, "do", words_of(stage_tables()), "[[stage]]")];
       Stage& made = scene.stages.emplace_back(stage.make());
       read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
            made.locations);
@@ -162,11 +161,10 @@ class Reader {
   void read_outputs(const toml::table& root, Scene& scene) const {
     const toml::array* outputs = tables_in(root, "output");
     if (!outputs) return;
-    Names names;
-    for (const OutputTable* format : output_tables()) names.push_back(format->name());
     for (const toml::node& item : *outputs) {
       const toml::table& table = *item.as_table();
-      const OutputTable& format = *output_tables()[choose(table, "format", names, "[[output]]")];
+      const OutputTable& format =
+          *output_tables()[choose(table, "format", words_of(output_tables()), "[[output]]")];
       Output& made = scene.outputs.emplace_back(Output{.format = std::string(format.name())});
       read(table, format.keys, "format", fmt::format("[[output]] {}", format.name()), &made, made.locations);
     }
@@ -191,10 +189,11 @@ class Reader {
          instead.empty() ? remedy(unknown->str(), known) : instead);
   }
 
-  /// Which of several names a table has under `selector`, by its place among them.
-  std::size_t choose(const toml::table& table, std::string_view selector, const Names& names,
+  /// Which of several words a table has under `selector`, by its place among them.
+  std::size_t choose(const toml::table& table, std::string_view selector, const std::vector<KnownWord>& known,
                      std::string_view where) const {
     const toml::node* node = table.get(selector);
+    const Names names = names_of(known);
     if (!node)
       fail(table.source(), "missing \"{}\" in {}; it is one of \"{}\"", selector, where,
            fmt::join(names, "\", \""));
@@ -205,7 +204,7 @@ class Reader {
     const auto found = std::ranges::find(names, word->get());
     if (found == names.end())
       fail(node->source(), "unknown {} {} in {}{}", selector == "do" ? "stage" : selector, written(*node),
-           where, remedy(word->get(), names));
+           where, remedy_of_word(word->get(), known));
     return static_cast<std::size_t>(found - names.begin());
   }
 
@@ -238,7 +237,7 @@ class Reader {
            written(*node.as_array()->get(*k)));
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
-           remedy(std::get<std::string>(*value), key.words));
+           remedy_of_word(std::get<std::string>(*value), {key.words.begin(), key.words.end()}));
     fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
          written(node));
   }
@@ -327,7 +326,7 @@ class Reader {
     if (const toml::table* table = node.as_table()) {
       const std::string named = fmt::format("{} of {}", key.name, where);
       const auto& entries = schema::size_entries();
-      const std::size_t n = choose(*table, "distribution", names_of(entries), named);
+      const std::size_t n = choose(*table, "distribution", words_of(entries), named);
       schema::hold(sizes, n);
       read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
       return sizes;

@@ -51,6 +51,18 @@ TEST(Pack, WritesEveryFileOfTheContract) {
     EXPECT_NE(packed.err.find(word), std::string::npos) << word << "\nis not in:\n" << packed.err;
 }
 
+TEST(Pack, SaysOnceHowTheSceneIsUnderstood) {
+  const Folder folder;
+  const Ended packed =
+      bernal({"pack", folder.write("scene.toml", small_scene).string(), "-o", (folder / "out").string()});
+  const std::string note = "note       300 spheres will float in the container";
+  ASSERT_NE(packed.err.find(note), std::string::npos) << packed.err;
+  EXPECT_EQ(packed.err.find(note), packed.err.rfind(note));
+  const Ended explained = bernal({"explain", (folder / "scene.toml").string()});
+  EXPECT_NE(explained.out.find(note), std::string::npos) << explained.out;
+  EXPECT_EQ(report_of(folder / "out")["notes"].size(), 1U);
+}
+
 // A name may hold what moves a terminal's cursor or turns the direction of writing.
 TEST(Pack, TheNameOfAMeshReachesNoTerminalAndNoPageRaw) {
   const Folder folder;
