@@ -8,7 +8,7 @@ namespace bernal {
 /// A word that a scene takes, and a phrase on what it is.
 struct KnownWord {
   std::string_view name, about;
-  KnownWord(std::string_view name, std::string_view about = {}) : name(name), about(about) {}
+  KnownWord(std::string_view word, std::string_view phrase = {}) : name(word), about(phrase) {}
 };
 
 /// Those by which the tables are chosen: entries, or tables that have theirs as `keys`.
