@@ -366,7 +366,7 @@ Stage stage_named(std::string_view name) {
   for (const StageTable* table : stage_tables())
     if (table->name() == name) return table->make();
   throw Error(ErrorCode::bad_argument, fmt::format("unknown stage {}{}", toml_string(name),
-                                                   remedy_of_word(name, words_of(stage_tables()))));
+                                                   remedy_of_word(name, known_words_in(stage_tables()))));
 }
 
 }  // namespace bernal

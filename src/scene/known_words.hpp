@@ -13,7 +13,7 @@ struct KnownWord {
 
 /// Those by which the tables are chosen: entries, or tables that have theirs as `keys`.
 template <class Tables>
-std::vector<KnownWord> words_of(const Tables& tables) {
+std::vector<KnownWord> known_words_in(const Tables& tables) {
   std::vector<KnownWord> words;
   for (const auto& table : tables)
     if constexpr (requires { table->keys; })

@@ -106,7 +106,7 @@ const OutputTable& table_of(const Output& output) {
     if (table->name() == output.format) return *table;
   throw Error(ErrorCode::bad_scene,
               fmt::format("unknown format {}{}", toml_string(output.format),
-                          remedy_of_word(output.format, words_of(output_tables()))),
+                          remedy_of_word(output.format, known_words_in(output_tables()))),
               output.locations.whole);
 }
 

@@ -102,7 +102,7 @@ class Reader {
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
     schema::hold(scene.container,
-                 choose(table, "kind", words_of(schema::container_entries()), "[container]"));
+                 choose(table, "kind", known_words_in(schema::container_entries()), "[container]"));
     read(table, schema::entry_of(scene.container), "kind", "[container]", schema::options_of(scene.container),
          scene.container.locations);
     auto* mesh = std::get_if<MeshFile>(&scene.container);
@@ -118,7 +118,7 @@ class Reader {
     if (!root.contains("engine")) return;
     const toml::table& table = table_in(root, "engine");
     SceneEngine& engine = scene.engine.emplace();
-    schema::hold(engine, choose(table, "kind", words_of(schema::engine_entries()), "[engine]"));
+    schema::hold(engine, choose(table, "kind", known_words_in(schema::engine_entries()), "[engine]"));
     engine.locations.keys["kind"] = at(table.find("kind")->first.source());
     read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
   }
@@ -151,7 +151,8 @@ class Reader {
     if (!stages) return;
     for (const toml::node& item : *stages) {
       const toml::table& table = *item.as_table();
-      const StageTable& stage = *stage_tables()[choose(table, "do", words_of(stage_tables()), "[[stage]]")];
+      const StageTable& stage =
+          *stage_tables()[choose(table, "do", known_words_in(stage_tables()), "[[stage]]")];
       Stage& made = scene.stages.emplace_back(stage.make());
       read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
            made.locations);
@@ -164,7 +165,7 @@ class Reader {
     for (const toml::node& item : *outputs) {
       const toml::table& table = *item.as_table();
       const OutputTable& format =
-          *output_tables()[choose(table, "format", words_of(output_tables()), "[[output]]")];
+          *output_tables()[choose(table, "format", known_words_in(output_tables()), "[[output]]")];
       Output& made = scene.outputs.emplace_back(Output{.format = std::string(format.name())});
       read(table, format.keys, "format", fmt::format("[[output]] {}", format.name()), &made, made.locations);
     }
@@ -326,7 +327,7 @@ class Reader {
     if (const toml::table* table = node.as_table()) {
       const std::string named = fmt::format("{} of {}", key.name, where);
       const auto& entries = schema::size_entries();
-      const std::size_t n = choose(*table, "distribution", words_of(entries), named);
+      const std::size_t n = choose(*table, "distribution", known_words_in(entries), named);
       schema::hold(sizes, n);
       read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
       return sizes;
