@@ -12,6 +12,7 @@
 #include "report/page.hpp"
 #include "report/report.hpp"
 #include "report/report_style.hpp"
+#include "scene/scene_entries.hpp"
 #include "viewer/html.hpp"
 #include "viewer/viewer_files.hpp"
 #include "viewer/viewer_parts.hpp"
@@ -246,8 +247,12 @@ void write_certificate(Page& page, const Report& report) {
 
 std::string html_of(const Report& report, const Pictures& pictures, std::string_view scene) {
   const Packing& packing = report.packing;
-  std::string title = fmt::format("{} sphere{} in a {}", grouped(packing.spheres.size()),
-                                  packing.spheres.size() == 1 ? "" : "s", name_of(packing.domain));
+  const SceneContainer& container = packing.scene.container;
+  std::string title = fmt::format(
+      "{} sphere{} in a {}", grouped(packing.spheres.size()), packing.spheres.size() == 1 ? "" : "s",
+      container.obstacles.empty()
+          ? name_of(packing.domain)
+          : fmt::format("{} with obstacles", schema::word_of(container, packing.domain)));
   if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
     title += ", " + plain_text(mesh->file.filename().string());
   Page page;

@@ -67,7 +67,8 @@ static void archive(Archive& a, Scene& scene) {
   std::vector<std::string> names;
   for (const std::filesystem::path* const name : files_named_in(scene)) names.push_back(name->string());
   std::map<std::filesystem::path, std::shared_ptr<const PolygonSurface>> surfaces;
-  if (const auto* mesh = std::get_if<MeshFile>(&scene.container)) surfaces = mesh->surfaces;
+  for (const MeshFile* mesh : scene.container.meshes())
+    surfaces.insert(mesh->surfaces.begin(), mesh->surfaces.end());
   std::uint64_t count = surfaces.size();
   std::shared_ptr<const Packing> start = scene.start.packing;
   bool are_default = scene.stages_are_default;
@@ -90,7 +91,9 @@ static void archive(Archive& a, Scene& scene) {
       std::shared_ptr<const PolygonSurface> surface;
       a(name);
       archive_shared(a, surface);
-      std::get<MeshFile>(scene.container).surfaces.emplace(name, std::move(surface));
+      for (MeshFile* mesh : scene.container.meshes())
+        for (const std::filesystem::path* part : mesh->files())
+          if (*part == name) mesh->surfaces.emplace(name, surface);
     }
   } else {
     for (auto& [path, surface] : surfaces) {

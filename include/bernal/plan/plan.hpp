@@ -66,7 +66,7 @@ Plan build(const Scene& scene);
 /// stands, even where the packing is to decide how large it becomes and only its proportions matter to
 /// `build`; without a size it is the unit cube. Throws as `build`.
 Domain domain_of(const Scene& scene);
-/// The same, with what the importer did in `notes`, and in `caution` what may not be meant: see
+/// The same, with what the importer and obstacles did in `notes`, and in `caution` what may not be meant: see
 /// `MeshReport::cautions`; the scene then says itself what was left to the file.
 Domain domain_of(Scene& scene, std::string& notes, std::string& caution);
 
