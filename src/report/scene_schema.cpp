@@ -121,6 +121,8 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
                                                                    : key.type);
   if (const auto text = measured_text(key.quantity); text && key.type == "number")
     value = either(std::move(value), *text);
+  else if (text && key.type == "shares")
+    value = array_of(either(refers_to("positive"), *text), 1);
   if (key.words.empty()) return value;
   const SceneSchema word = one_of_words(key);
   if (key.type == "names") return {{"anyOf", {word, array_of(word, 1)}}};
@@ -245,8 +247,8 @@ std::string scene_schema_as_json() {
   sizes.at("anyOf").push_back(
       {{"required", {"start"}}, {"properties", {{"radius", false}, {"diameter", false}}}});
   definitions["solid"]["anyOf"].push_back(refers_to("file"));
-  for (const std::string_view kind : schema::kinds_of_solids())
-    definitions["solid"]["anyOf"].push_back(refers_to(fmt::format("container_{}", kind)));
+  for (const KnownWord& kind : schema::kinds_of_solids())
+    definitions["solid"]["anyOf"].push_back(refers_to(fmt::format("container_{}", kind.name)));
   SceneSchema& properties = scene.at("properties");
   properties["container"] = refers_to("container");
   properties["container"]["description"] = "what the spheres lie in";

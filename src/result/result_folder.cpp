@@ -50,7 +50,9 @@ bool stands_in(const fs::path& file, const fs::path& folder) {
 bool is_as_written(const fs::path& scene) {
   if (!is_regular(scene)) return false;
   try {
-    return scene_as_toml(read_scene(scene), scene.parent_path()) == bytes_of_file(scene);
+    Scene written = read_scene(scene);
+    put_long_lists_beside(written);
+    return scene_as_toml(written, scene.parent_path()) == bytes_of_file(scene);
   } catch (const Error&) {
     return false;
   }

@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "scene/complete_sizes.hpp"
+#include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
@@ -387,13 +388,10 @@ const StageTable& table_of(const Stage& stage) {
 std::string_view Stage::name() const { return table_of(*this).name(); }
 
 Stage stage_named(std::string_view name) {
-  std::vector<std::string_view> names;
-  for (const StageTable* table : stage_tables()) {
+  for (const StageTable* table : stage_tables())
     if (table->name() == name) return table->make();
-    names.push_back(table->name());
-  }
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("unknown stage {}{}", toml_string(name), remedy(name, names)));
+  throw Error(ErrorCode::bad_argument, fmt::format("unknown stage {}{}", toml_string(name),
+                                                   remedy_of_word(name, known_words_in(stage_tables()))));
 }
 
 }  // namespace bernal

@@ -11,6 +11,7 @@
 
 #include "bernal/core/text.hpp"
 #include "scene/keys_from_columns.hpp"
+#include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
 #include "scene/read_value.hpp"
 #include "scene/said_in_phi.hpp"
@@ -87,17 +88,17 @@ class Reader {
 
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
-    read_solid(table, names_of(schema::container_entries()), "[container]", scene.container);
+    read_solid(table, known_words_in(schema::container_entries()), "[container]", scene.container);
     if (!scene.container.meshes().empty() && !root.contains("unit"))
       fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
   }
 
   /// A container or an obstacle; `kinds` may stand there.
-  void read_solid(const toml::table& table, const Names& kinds, const std::string& where,
+  void read_solid(const toml::table& table, const std::vector<KnownWord>& kinds, const std::string& where,
                   SceneContainer& solid) const {
     const auto& entries = schema::container_entries();
     const std::size_t kind = choose(table, "kind", kinds, where);
-    const auto of_kind = std::ranges::find(entries, kinds[kind], &Entry::name);
+    const auto of_kind = std::ranges::find(entries, kinds[kind].name, &Entry::name);
     schema::hold(solid, static_cast<std::size_t>(of_kind - entries.begin()));
     read(table, *of_kind, "kind", where, schema::options_of(solid), solid.locations);
     if (auto* mesh = std::get_if<MeshFile>(&solid))
@@ -139,7 +140,7 @@ class Reader {
     if (!root.contains("engine")) return;
     const toml::table& table = table_in(root, "engine");
     SceneEngine& engine = scene.engine.emplace();
-    schema::hold(engine, choose(table, "kind", names_of(schema::engine_entries()), "[engine]"));
+    schema::hold(engine, choose(table, "kind", known_words_in(schema::engine_entries()), "[engine]"));
     engine.locations.keys["kind"] = at(table.find("kind")->first.source());
     read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
   }
@@ -170,11 +171,10 @@ class Reader {
   void read_stages(const toml::table& root, Scene& scene) const {
     const toml::array* stages = tables_in(root, "stage");
     if (!stages) return;
-    Names names;
-    for (const StageTable* stage : stage_tables()) names.push_back(stage->name());
     for (const toml::node& item : *stages) {
       const toml::table& table = *item.as_table();
-      const StageTable& stage = *stage_tables()[choose(table, "do", names, "[[stage]]")];
+      const StageTable& stage =
+          *stage_tables()[choose(table, "do", known_words_in(stage_tables()), "[[stage]]")];
       Stage& made = scene.stages.emplace_back(stage.make());
       read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
            made.locations);
@@ -184,11 +184,10 @@ class Reader {
   void read_outputs(const toml::table& root, Scene& scene) const {
     const toml::array* outputs = tables_in(root, "output");
     if (!outputs) return;
-    Names names;
-    for (const OutputTable* format : output_tables()) names.push_back(format->name());
     for (const toml::node& item : *outputs) {
       const toml::table& table = *item.as_table();
-      const OutputTable& format = *output_tables()[choose(table, "format", names, "[[output]]")];
+      const OutputTable& format =
+          *output_tables()[choose(table, "format", known_words_in(output_tables()), "[[output]]")];
       Output& made = scene.outputs.emplace_back(Output{.format = std::string(format.name())});
       read(table, format.keys, "format", fmt::format("[[output]] {}", format.name()), &made, made.locations);
     }
@@ -213,10 +212,11 @@ class Reader {
          instead.empty() ? remedy(unknown->str(), known) : instead);
   }
 
-  /// Which of several names a table has under `selector`, by its place among them.
-  std::size_t choose(const toml::table& table, std::string_view selector, const Names& names,
+  /// Which of several words a table has under `selector`, by its place among them.
+  std::size_t choose(const toml::table& table, std::string_view selector, const std::vector<KnownWord>& known,
                      std::string_view where) const {
     const toml::node* node = table.get(selector);
+    const Names names = names_of(known);
     if (!node)
       fail(table.source(), "missing \"{}\" in {}; it is one of \"{}\"", selector, where,
            fmt::join(names, "\", \""));
@@ -227,7 +227,7 @@ class Reader {
     const auto found = std::ranges::find(names, word->get());
     if (found == names.end())
       fail(node->source(), "unknown {} {} in {}{}", selector == "do" ? "stage" : selector, written(*node),
-           where, remedy(word->get(), names));
+           where, remedy_of_word(word->get(), known));
     return static_cast<std::size_t>(found - names.begin());
   }
 
@@ -260,7 +260,7 @@ class Reader {
            written(*node.as_array()->get(*k)));
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
-           remedy(std::get<std::string>(*value), key.words));
+           remedy_of_word(std::get<std::string>(*value), {key.words.begin(), key.words.end()}));
     fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
          written(node));
   }
@@ -314,7 +314,7 @@ class Reader {
     if (const toml::table* table = node.as_table()) {
       const std::string named = fmt::format("{} of {}", key.name, where);
       const auto& entries = schema::size_entries();
-      const std::size_t n = choose(*table, "distribution", names_of(entries), named);
+      const std::size_t n = choose(*table, "distribution", known_words_in(entries), named);
       schema::hold(sizes, n);
       read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
       return sizes;

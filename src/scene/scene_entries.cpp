@@ -175,10 +175,10 @@ Key rounding_key() {
   return length({}, "rounding", "its edges are rounded with this radius; if absent they are sharp");
 }
 
-std::vector<std::string_view> kinds_of_solids() {
-  std::vector<std::string_view> kinds;
+std::vector<KnownWord> kinds_of_solids() {
+  std::vector<KnownWord> kinds;
   for (const Entry& entry : container_entries())
-    if (entry.find("obstacles")) kinds.push_back(entry.name);
+    if (entry.find("obstacles")) kinds.emplace_back(entry.name, entry.help);
   return kinds;
 }
 

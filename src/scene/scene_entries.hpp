@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "scene/entry.hpp"
+#include "scene/known_words.hpp"
 
 namespace bernal::schema {
 
@@ -29,7 +30,7 @@ Entry extruded_entry();
 Key obstacles_key();
 Key rounding_key();
 /// Those that may have obstacles, and be such themselves.
-std::vector<std::string_view> kinds_of_solids();
+std::vector<KnownWord> kinds_of_solids();
 
 /// What stands for a key that a distribution has not but other programs have, "; write …"; empty where
 /// nothing is known of it. `number` is what the table gives to a key.

@@ -50,8 +50,7 @@ struct Plan {
   /// of its largest spheres for that, how many, and how many would do; where a CAD part may not be what is
   /// meant, why; a sentence, or empty.
   std::string caution;
-  /// What `explain` adds: how the scene is understood where it leaves that open, and the line that says
-  /// otherwise; sentences.
+  /// How the scene is understood where it leaves that open, and the line that says otherwise; sentences.
   std::vector<std::string> hints;
   bool places_expected = false;     ///< some stage ends with as many spheres as are expected to fit
   std::vector<PlanItem> items;      ///< what would run, in order
