@@ -366,7 +366,7 @@ FillTask fill_task_of(const Plan& plan) {
   return task;
 }
 
-Plan made_plan(const Scene& stated) {
+Plan made_plan(const Scene& stated, const PlaceOfPlan* place) {
   Plan plan;
   plan.scene = stated;
   complete(plan.scene);
@@ -374,13 +374,16 @@ Plan made_plan(const Scene& stated) {
   require_stage_that_places(scene);
   require_effect_of_accuracy(scene);
   plan.start = read_start(plan.scene);
-  plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
+  if (place)
+    plan.domain = place->domain, plan.container = place->container;
+  else
+    plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
   if (scene.engine) engine::require_engine_fits(scene, plan.domain);
   plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
   set_height_of_bed(plan);
   if (scene.asks_for_gaps()) {
     require_gaps(plan);
-    if (is_faceted(plan.domain)) plan.container = container_of(plan);
+    if (is_faceted(plan.domain) && !plan.container) plan.container = container_of(plan);
     expect_with_room(plan);
     if (plan.scene.target.predicted) {  // again from the number that whoever reads it will have
       plan.scene.target.predicted = false;

@@ -13,6 +13,7 @@
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/zones.hpp"
 
 namespace bernal {
 namespace {
@@ -330,6 +331,24 @@ bool StageTraits::works_in(const Scene& scene) const {
   return in_box && (box_between_walls || box.walls.empty());
 }
 
+/// Each as a scene of its own, once the stages of the whole are known.
+static void complete_zones(Scene& scene) {
+  for (std::size_t k = 0; k < scene.zones.size(); ++k) {
+    Zone& zone = scene.zones[k];
+    const std::string name = section_name_of_zone(k + 1);
+    check(schema::zone_entry(), &zone, {name, zone.locations});
+    check(schema::spheres_of_zone_entry(), &zone.spheres, {name, zone.spheres.locations});
+    complete_density(zone.spheres);
+  }
+  if (scene.zones.empty()) return;
+  require_zones(scene);
+  for (Zone& zone : scene.zones) {
+    Scene of = scene_of_zone(scene, zone);
+    complete(of);
+    zone.spheres.draw = of.draw;
+  }
+}
+
 void complete(Scene& scene) {
   complete_density(scene);
   for (const Entry* entry : schema::own_entries())
@@ -342,10 +361,11 @@ void complete(Scene& scene) {
   take_porosity(scene);
   complete_list(scene);
   check_target(scene);
-  if (!is_start_alone(scene))
+  if (!is_start_alone(scene) && (scene.draws() || scene.zones.empty()))
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
                 scene);
   complete_stages(scene);
+  complete_zones(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});

@@ -19,6 +19,7 @@
 #include "scene/stage_table.hpp"
 #include "scene/toml_file.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/zones.hpp"
 
 namespace bernal {
 namespace {
@@ -35,6 +36,12 @@ Names names_of(const auto& entries) {
   return names;
 }
 
+/// Whether a key is what stands in the columns of the entry's "file".
+bool comes_from_file(const Entry& entry, const Key& key) {
+  return entry.columns.empty() ? key.type == Type::points
+                               : std::ranges::find(entry.columns, key.name) != entry.columns.end();
+}
+
 /// Reads tables of a scene's file into the structs of their entries. Every error is an Error{bad_scene} with
 /// the file, the line and the remedy; `where` is what it calls the table: "[container]".
 class Reader {
@@ -48,7 +55,8 @@ class Reader {
     read_own(root, schema::scene_entry(), "the scene", scene);
     unit_ = scene.unit;
     read_container(root, scene);
-    read_spheres(table_in(root, "spheres"), scene);
+    read_spheres(root, scene);
+    read_zones(root, scene);
     if (root.contains("accuracy"))
       read_own(table_in(root, "accuracy"), schema::accuracy_entry(), "[accuracy]", scene);
     read_engine(root, scene);
@@ -69,7 +77,7 @@ class Reader {
     check_names(root, schema::scene_entry(), {tables.begin(), tables.end()}, "the scene");
     for (const std::string_view name : tables)
       if (const toml::node* node = root.get(name);
-          node && name != "stage" && name != "output" && !node->is_table())
+          node && name != "stage" && name != "output" && name != "zone" && !node->is_table())
         fail(node->source(), "\"{0}\" must be a table [{0}], not {1}", name, written(*node));
   }
 
@@ -85,25 +93,12 @@ class Reader {
     scene.locations.whole = {file_};
   }
 
-  /// Where a file is that is named at a place: most often in the scene, and else in what lays values over it.
-  /// Behind links to folders ".." is what the system takes it for; a file that is a link itself may mean the
-  /// folder that the link stands in, or the one that it leads to.
-  static std::filesystem::path beside(const Location& place, const std::filesystem::path& file) {
-    std::error_code unknown;
-    const std::filesystem::path naming = place.file;
-    const std::filesystem::path here = naming.parent_path() / file, plain = here.lexically_normal();
-    if (std::filesystem::equivalent(here, plain, unknown)) return plain;
-    if (std::filesystem::exists(here, unknown)) return here;
-    const std::filesystem::path there = std::filesystem::canonical(naming, unknown).parent_path() / file;
-    return !unknown && std::filesystem::exists(there, unknown) ? there.lexically_normal() : plain;
-  }
-
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
     schema::hold(scene.container,
                  choose(table, "kind", names_of(schema::container_entries()), "[container]"));
-    read(table, schema::entry_of(scene.container), "kind", "[container]", schema::options_of(scene.container),
-         scene.container.locations);
+    read(table, schema::entry_of(scene.container), {"kind"}, "[container]",
+         schema::options_of(scene.container), scene.container.locations);
     auto* mesh = std::get_if<MeshFile>(&scene.container);
     if (!mesh) return;
     if (!root.contains("unit"))
@@ -119,13 +114,17 @@ class Reader {
     SceneEngine& engine = scene.engine.emplace();
     schema::hold(engine, choose(table, "kind", names_of(schema::engine_entries()), "[engine]"));
     engine.locations.keys["kind"] = at(table.find("kind")->first.source());
-    read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
+    read(table, schema::entry_of(engine), {"kind"}, "[engine]", schema::options_of(engine), engine.locations);
   }
 
-  void read_spheres(const toml::table& table, Scene& scene) {
+  /// Zones need no others beside theirs.
+  void read_spheres(const toml::table& root, Scene& scene) {
+    const bool has_zones = root.contains("zone");
+    if (has_zones && !root.contains("spheres")) return;
+    const toml::table& table = table_in(root, "spheres");
     sizes_are_diameters_ = table.contains("diameter");
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
-    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start"))
+    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start") && !has_zones)
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
     scene.target.where = at(table.source());
@@ -134,41 +133,52 @@ class Reader {
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
   }
 
-  /// All tables [[name]]; null where there are none.
-  const toml::array* tables_in(const toml::table& root, std::string_view name) const {
+  void read_zones(const toml::table& root, Scene& scene) {
+    for (const toml::table* table : tables_in(root, "zone")) {
+      Zone& zone = scene.zones.emplace_back();
+      Scene& spheres = zone.spheres;
+      const std::string where = section_name_of_zone(scene.zones.size());
+      sizes_are_diameters_ = table->contains("diameter");
+      read(*table, schema::zone_entry(), names_of(schema::spheres_of_zone_entry().keys), where, &zone,
+           zone.locations);
+      spheres.file = path_;
+      read(*table, schema::spheres_of_zone_entry(), names_of(schema::zone_entry().keys), where, &spheres,
+           spheres.locations);
+      spheres.target.where = spheres.locations.whole;
+    }
+  }
+
+  /// All tables [[name]].
+  std::vector<const toml::table*> tables_in(const toml::table& root, std::string_view name) const {
+    std::vector<const toml::table*> all;
     const toml::node* node = root.get(name);
-    if (!node) return nullptr;
-    const toml::array* all = node->as_array();
-    if (!all || all->empty() || !all->is_array_of_tables())
+    if (!node) return all;
+    if (const toml::array* array = node->as_array(); !array || array->empty() || !array->is_array_of_tables())
       fail(node->source(), "\"{0}\" must be one table [[{0}]] {1} {0}, not {2}", name,
            name == "output" ? "an" : "a", written(*node));
+    for (const toml::node& item : *node->as_array()) all.push_back(item.as_table());
     return all;
   }
 
   void read_stages(const toml::table& root, Scene& scene) const {
-    const toml::array* stages = tables_in(root, "stage");
-    if (!stages) return;
     Names names;
     for (const StageTable* stage : stage_tables()) names.push_back(stage->name());
-    for (const toml::node& item : *stages) {
-      const toml::table& table = *item.as_table();
-      const StageTable& stage = *stage_tables()[choose(table, "do", names, "[[stage]]")];
+    for (const toml::table* table : tables_in(root, "stage")) {
+      const StageTable& stage = *stage_tables()[choose(*table, "do", names, "[[stage]]")];
       Stage& made = scene.stages.emplace_back(stage.make());
-      read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
+      read(*table, stage.keys, {"do"}, fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
            made.locations);
     }
   }
 
   void read_outputs(const toml::table& root, Scene& scene) const {
-    const toml::array* outputs = tables_in(root, "output");
-    if (!outputs) return;
     Names names;
     for (const OutputTable* format : output_tables()) names.push_back(format->name());
-    for (const toml::node& item : *outputs) {
-      const toml::table& table = *item.as_table();
-      const OutputTable& format = *output_tables()[choose(table, "format", names, "[[output]]")];
+    for (const toml::table* table : tables_in(root, "output")) {
+      const OutputTable& format = *output_tables()[choose(*table, "format", names, "[[output]]")];
       Output& made = scene.outputs.emplace_back(Output{.format = std::string(format.name())});
-      read(table, format.keys, "format", fmt::format("[[output]] {}", format.name()), &made, made.locations);
+      read(*table, format.keys, {"format"}, fmt::format("[[output]] {}", format.name()), &made,
+           made.locations);
     }
   }
 
@@ -243,12 +253,12 @@ class Reader {
          written(node));
   }
 
-  /// All keys of an entry that the table has; what is missing, `complete` finds. Refuses unknown ones, except
-  /// at the top of the file, where the tables stand between the keys: there `check_names` does.
-  void read(const toml::table& table, const Entry& entry, std::string_view selector, const std::string& where,
+  /// All keys of an entry that the table has, besides `others`; what is missing, `complete` finds. Refuses
+  /// unknown ones, except at the top of the file, where the tables stand between the keys: there
+  /// `check_names` does.
+  void read(const toml::table& table, const Entry& entry, const Names& others, const std::string& where,
             void* options, Locations& locations) const {
-    if (&entry != &schema::scene_entry())
-      check_names(table, entry, selector.empty() ? Names{} : Names{selector}, where);
+    if (&entry != &schema::scene_entry()) check_names(table, entry, others, where);
     if (locations.whole.file.empty()) locations.whole = at(table.source());
     for (const Key& key : entry.keys) {
       const auto found = table.find(key.name);
@@ -264,11 +274,6 @@ class Reader {
                other.name, key.name, where);
       take_columns(found->second, entry, where, options, locations);
     }
-  }
-
-  static bool comes_from_file(const Entry& entry, const Key& key) {
-    return entry.columns.empty() ? key.type == Type::points
-                                 : std::ranges::find(entry.columns, key.name) != entry.columns.end();
   }
 
   static constexpr std::size_t most_listed = 20'000'000;
@@ -329,7 +334,7 @@ class Reader {
       const auto& entries = schema::size_entries();
       const std::size_t n = choose(*table, "distribution", names_of(entries), named);
       schema::hold(sizes, n);
-      read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
+      read(*table, entries[n], {"distribution"}, named, schema::options_of(sizes), sizes.locations);
       return sizes;
     }
     if (const auto* word = node.as_string();
@@ -367,7 +372,7 @@ class Reader {
     throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
   }
 
-  static constexpr std::array<std::string_view, 6> tables = {"container", "spheres", "accuracy",
+  static constexpr std::array<std::string_view, 7> tables = {"container", "spheres", "zone",  "accuracy",
                                                              "engine",    "stage",   "output"};
 
   std::filesystem::path path_;

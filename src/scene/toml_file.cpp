@@ -102,4 +102,14 @@ Location location_of(const toml::source_region& where, const std::string& otherw
           static_cast<int>(where.begin.column)};
 }
 
+std::filesystem::path beside(const Location& place, const std::filesystem::path& file) {
+  std::error_code unknown;
+  const std::filesystem::path naming = place.file;
+  const std::filesystem::path here = naming.parent_path() / file, plain = here.lexically_normal();
+  if (std::filesystem::equivalent(here, plain, unknown)) return plain;
+  if (std::filesystem::exists(here, unknown)) return here;
+  const std::filesystem::path there = std::filesystem::canonical(naming, unknown).parent_path() / file;
+  return !unknown && std::filesystem::exists(there, unknown) ? there.lexically_normal() : plain;
+}
+
 }  // namespace bernal
