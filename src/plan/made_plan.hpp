@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "bernal/plan/plan.hpp"
 
 namespace bernal {
@@ -11,5 +13,9 @@ struct PlaceOfPlan {
 
 /// What `build` makes of a scene without zones, before that has it in the words of the scene's dimension.
 Plan made_plan(const Scene& scene, const PlaceOfPlan* place = nullptr);
+
+/// The same; nothing where the largest of its spheres do not fit into their domain by themselves, see
+/// `may_fit`.
+std::optional<Plan> made_plan_where_all_fit(const Scene& scene);
 
 }  // namespace bernal

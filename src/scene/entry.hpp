@@ -47,6 +47,7 @@ enum class Type {
   axes,          ///< array of axes, counted from 0, each once
   distribution,  ///< a length, or a table of one of the distributions
   parts,         ///< array of distributions
+  solids,        ///< array of files of closed surfaces and of tables of containers, or one file
 };
 
 struct Range {
@@ -136,7 +137,8 @@ enum class Acts { everywhere, in_bed, in_box };
 struct Key {
   std::string_view name;
   Type type;
-  Member member = {};  ///< none of a key that the reader replaces by others
+  /// None of a key that the reader replaces by others, nor of what any container may have.
+  Member member = {};
   std::string_view help = {};
   Range range = {};
   std::vector<std::string_view> words = {};
@@ -272,5 +274,9 @@ std::string expectation(const Key&, const std::optional<Value>& given = {});
 /// Whether a value is one that the key accepts. Lengths and coordinates beyond 1e±30 are
 /// not.
 bool accepts(const Key&, const Value&);
+
+/// Throws Error{bad_scene} unless every value of the struct is one that a scene can say, by the entry's keys,
+/// choices and rule.
+void check(const Entry& entry, const void* options, const Section& section, bool in_bed = true);
 
 }  // namespace bernal::schema

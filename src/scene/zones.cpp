@@ -6,7 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "bernal/scene/read_scene.hpp"
 #include "bernal/scene/sphere_classes.hpp"
+#include "scene/complete_sizes.hpp"
+#include "scene/scene_entries.hpp"
 #include "scene/size_kinds.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
@@ -98,7 +101,8 @@ Scene scene_of_rest(const Scene& whole) {
   return of;
 }
 
-void require_zones(const Scene& scene) {
+/// Throws Error{bad_scene} where zones contradict each other or the scene around them.
+static void require_zones(const Scene& scene) {
   require_plain_scene(scene);
   const bool laid = lays_zones(scene);
   std::set<std::string, std::less<>> names;
@@ -135,6 +139,23 @@ void require_zones(const Scene& scene) {
            fmt::format("spheres on both sides of a plane would be nearer than \"gap\": give a \"wall_gap\" "
                        "of {:g}, half of it, in [spheres]",
                        scene.gap / 2));
+  }
+}
+
+void complete_zones(Scene& scene) {
+  for (std::size_t k = 0; k < scene.zones.size(); ++k) {
+    Zone& zone = scene.zones[k];
+    const std::string name = section_name_of_zone(k + 1);
+    schema::check(schema::zone_entry(), &zone, {name, zone.locations});
+    schema::check(schema::spheres_of_zone_entry(), &zone.spheres, {name, zone.spheres.locations});
+    complete_density(zone.spheres);
+  }
+  if (scene.zones.empty()) return;
+  require_zones(scene);
+  for (Zone& zone : scene.zones) {
+    Scene of = scene_of_zone(scene, zone);
+    complete(of);
+    zone.spheres.draw = of.draw;
   }
 }
 

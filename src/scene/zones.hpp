@@ -22,8 +22,8 @@ Scene scene_of_zone(const Scene&, const Zone&);
 /// The same of what lies in no zone.
 Scene scene_of_rest(const Scene&);
 
-/// Throws Error{bad_scene} where zones contradict each other or the scene around them. Precondition: the
-/// stages are known.
-void require_zones(const Scene&);
+/// Completes each zone as a scene of its own. Throws Error{bad_scene} where zones contradict each other or
+/// the scene around them. Precondition: the stages of the scene are known.
+void complete_zones(Scene&);
 
 }  // namespace bernal
