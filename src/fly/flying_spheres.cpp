@@ -1,7 +1,5 @@
 #include "fly/flying_spheres.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "core/every_dimension.hpp"

@@ -1,7 +1,6 @@
 #include "jam/jamming_energy.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>

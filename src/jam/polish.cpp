@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 #include "bernal/measure/measure.hpp"
 
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <memory>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,7 +10,6 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
-#include "bernal/domain/container.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
 #include "measure/patch.hpp"

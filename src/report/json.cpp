@@ -3,8 +3,6 @@
 
 #include <sys/resource.h>
 
-#include <optional>
-
 #include "files/seal.hpp"
 #include "report/measured_json.hpp"
 #include "report/report.hpp"

@@ -1,7 +1,6 @@
 #include "soft/crowd.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <optional>
 

@@ -1,7 +1,5 @@
 #include "work/holes.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>

@@ -6,8 +6,6 @@
 
 #include "bernal/measure/rest.hpp"
 #include "bernal/run/run.hpp"
-#include "bernal/settle/compress.hpp"
-#include "settle/roll_to_rest.hpp"
 #include "support/plain_check.hpp"
 #include "support/plans.hpp"
 

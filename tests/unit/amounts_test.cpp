@@ -10,7 +10,6 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/report/describe.hpp"
-#include "bernal/report/json.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "support/scene_texts.hpp"
