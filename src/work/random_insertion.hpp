@@ -8,6 +8,7 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
+#include "core/order.hpp"
 #include "near/cell_grid.hpp"
 
 namespace bernal {
@@ -65,7 +66,7 @@ bool insert_at_random(Spheres<D>& spheres, const std::vector<bool>& placed, doub
     else
       order.push_back(i);
   }
-  std::ranges::stable_sort(order, [&](auto i, auto j) { return spheres.r[i] > spheres.r[j]; });
+  sort_largest_first(order, spheres.r);
   for (const std::uint32_t i : order) {
     const double r = size * spheres.r[i];
     const auto is_free = [&](const Vector<D>& c) {
