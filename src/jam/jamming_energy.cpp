@@ -375,6 +375,17 @@ void JammingEnergy<D>::take_back() {
 }
 
 template <int D>
+void JammingEnergy<D>::archive(Archive& a) {
+  a(order_, radius_, load_per_overlap_, load_, smoothing_, state_, now_, pairs_, at_finding_,
+    width_at_finding_, held_, fixed_);
+  if (!enclosure_) return;
+  const auto walls = std::make_shared<NearWalls<D>>();
+  if (near_walls_) *walls = *near_walls_;
+  a(*walls);
+  near_walls_ = walls;
+}
+
+template <int D>
 void JammingEnergy<D>::write(Spheres<D>& spheres) const {
   const Boundary<D> box{state_.edges};
   for (std::size_t i = 0; i < size(); ++i)
