@@ -17,6 +17,7 @@
 #include "bernal/result/write_local.hpp"
 #include "bernal/result/write_section.hpp"
 #include "commands.hpp"
+#include "contact_text.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
 #include "say_unpublished.hpp"
@@ -34,6 +35,7 @@ struct MeasureCall {
   bool json = false;
   std::optional<std::string> plane;  ///< of a section, where no measurements are asked for
   std::filesystem::path picture;     ///< of the section
+  std::optional<std::string> slab;   ///< what alone is measured of walls, pores, g(r) and contacts
   std::filesystem::path local;       ///< where the table of local packing fractions goes; empty: nowhere
   std::filesystem::path contacts;    ///< and all contacts
 };
@@ -52,70 +54,6 @@ int draw_section(const MeasureCall& call) {
   return exit_code::done;
 }
 
-/// In words, from which gap on contacts tell which spheres hold which.
-std::string where_contacts_tell(const Measurements& measured) {
-  if (measured.held_from) return fmt::format("of what holds what from a gap of {:g} on", *measured.held_from);
-  return "of what holds what at none of these gaps";
-}
-
-/// How many spheres have how many contacts, and in which directions these are.
-void print_neighbours(const ContactSums& sums, std::size_t spheres) {
-  const std::vector<std::uint64_t> by_contacts = sums.spheres_by_contacts();
-  std::vector<std::string> shares;
-  for (std::size_t k = 0; k < by_contacts.size(); ++k)
-    if (by_contacts[k] > 0)
-      shares.push_back(fmt::format("{}: {:.3g} %", k,
-                                   100 * static_cast<double>(by_contacts[k]) / static_cast<double>(spheres)));
-  constexpr std::size_t in_a_line = 8;
-  for (std::size_t k = 0; k < shares.size(); k += in_a_line)
-    fmt::print("{:<18}{}\n", k == 0 ? "of a sphere" : "",
-               fmt::join(shares.begin() + static_cast<std::ptrdiff_t>(k),
-                         shares.begin() + static_cast<std::ptrdiff_t>(std::min(shares.size(), k + in_a_line)),
-                         ", "));
-  for (std::size_t k = 0; k < sums.fabric.size(); ++k)
-    fmt::print("{:<18}{:>8.4f}\n", k == 0 ? "fabric tensor" : "", fmt::join(sums.fabric[k], " "));
-}
-
-void print_contacts(const Packing& packing, const Measurements& measured) {
-  const Contacts& c = measured.contacts;
-  const bool walls = has_walls(packing.domain);
-  fmt::print("contacts          {} pairs", grouped(c.pairs));
-  if (walls) fmt::print(", {} with the wall", grouped(c.walls));
-  fmt::print(
-      ", at a gap below {:g} of the sum of the radii{}\n", c.contact_gap,
-      packing.scene.asks_for_gaps() ? ", beyond the gap that is asked for, which counts as theirs" : "");
-  fmt::print("coordination      {:.4f}\n", c.coordination);
-  if (measured.holds(c)) {
-    fmt::print("rattlers          {} ({:.2f} %), held by fewer than {} contacts\n", grouped(c.rattlers),
-               100.0 * static_cast<double>(c.rattlers) / static_cast<double>(packing.spheres.size()),
-               packing.spheres.dimension() + 1);
-    say(stdout, "backbone          {} spheres, {} contacts, coordination {:.4f}{}\n", grouped(c.backbone),
-        grouped(c.backbone_pairs), c.backbone_coordination,
-        walls ? fmt::format("; {} with the wall", grouped(c.backbone_walls)) : "");
-    const double ratio = static_cast<double>(c.backbone_contacts()) / static_cast<double>(*c.isostatic);
-    fmt::print("isostatic         {} contacts would just hold the backbone; there are {:.3g} % {}\n",
-               grouped(*c.isostatic), 100 * std::abs(ratio - 1), ratio < 1 ? "fewer" : "more");
-  }
-  print_neighbours(measured.of_contacts, packing.spheres.size());
-  const bool can_polish = packing.spheres.dimension() != 2 || is_periodic(packing.domain);
-  if (!packing.spheres.empty())
-    fmt::print("contacts tell     {}{}{}\n", where_contacts_tell(measured),
-               measured.holds(c) ? "" : ", so not at this one",
-               measured.holds(c) || !can_polish ? "" : "; \"polish\" of relax and grow closes them");
-
-  fmt::print("\n{:>8} {:>12} {:>13} {:>10} {:>18} {:>13}\n", "gap", "contacts", "coordination", "rattlers",
-             "backbone contacts", "of isostatic");
-  for (const Contacts& at : measured.by_gap) {
-    const bool holds = measured.holds(at);
-    fmt::print("{:>8.0e} {:>12} {:>13.4f} {:>10} {:>18} {:>13}\n", at.contact_gap, grouped(at.pairs),
-               at.coordination, holds ? grouped(at.rattlers) : "-",
-               holds ? grouped(at.backbone_contacts()) : "-",
-               holds ? fmt::format("{:.4f}", static_cast<double>(at.backbone_contacts()) /
-                                                 static_cast<double>(*at.isostatic))
-                     : "-");
-  }
-}
-
 /// Nearer than a diameter hardly any pair is expected.
 double largest_error(const RadialDistribution& radial) {
   double largest = 0;
@@ -124,8 +62,8 @@ double largest_error(const RadialDistribution& radial) {
   return largest;
 }
 
-void print_radial(const Packing& packing, const std::optional<RadialDistribution>& radial,
-                  const std::optional<BedProfile>& bed) {
+void print_radial(const Packing& packing, const Measurements& measured) {
+  const std::optional<RadialDistribution>& radial = measured.radial;
   if (!radial) {
     say(stdout, "\ng(r)              only of two spheres or more, and between walls in three dimensions\n");
     return;
@@ -138,7 +76,7 @@ void print_radial(const Packing& packing, const std::optional<RadialDistribution
     fmt::print(
         "between walls: by the share of each shell that lies off the walls{}; standard error from a diameter "
         "on up to {:.2g}\n",
-        part_of_bed(packing, bed), largest_error(*radial));
+        part_text(packing, measured), largest_error(*radial));
   print_chart(radial->g, 3, 3, fmt::format("{:.3g} diameters", reach));
   for (const auto& peak : radial->peaks)
     fmt::print("peak              {:.2f} at {:.3f} diameters (± {:.2f}, ± {:.3f})\n", peak.g,
@@ -254,24 +192,28 @@ void print(const Packing& packing, const Measurements& measured) {
       name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
       name_of(packing.scene.unit));
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
+  if (measured.slab)
+    fmt::print("  in the slab     {:.6f}, {}\n", measured.slab->packing_fraction,
+               slab_text(packing, *measured.slab));
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);
-  print_radial(packing, measured.radial, measured.bed);
+  print_radial(packing, measured);
   if (measured.size_correlation) print_size_correlation(*measured.size_correlation);
   if (measured.bed) print_bed(*measured.bed, name_of(packing.scene.unit));
   if (measured.walls) print_walls(packing, measured);
-  if (measured.column) print_column(packing, *measured.column);
+  if (measured.column) print_column(packing, measured);
   if (measured.order && !packing.spheres.empty()) print_order(*measured.order);
   if (measured.local) print_local(packing, *measured.local);
   if (!measured.local && packing.spheres.size() > most_cells)
     say(stdout, "\nlocal packing     not of so many spheres, unless --local FILE asks for it\n");
-  if (measured.pores) print_pores(packing, *measured.pores, part_of_bed(packing, measured.bed));
+  if (measured.pores) print_pores(packing, *measured.pores, part_text(packing, measured));
   if (measured.structure) print_structure(*measured.structure);
   if (measured.sizes) print_sizes(packing, *measured.sizes);
 }
 
 Measurements measured_of(const Packing& packing, const MeasureCall& call, const Monitor& monitor) {
   const SceneRadii radii = asked_radii_of(packing);
+  const auto slab = call.slab ? std::optional(slab_in(*call.slab, packing.scene.unit)) : std::nullopt;
   try {
     MeasureOptions options = call.options;
     options.monitor = monitor;
@@ -280,6 +222,7 @@ Measurements measured_of(const Packing& packing, const MeasureCall& call, const 
     options.gap = packing.scene.gap;
     options.wall_gap = packing.scene.wall_gap;
     options.bed = bed_options_of(packing.scene);
+    options.slab = slab;
     return measure(packing.spheres, packing.domain, radii.asked, options);
   } catch (const Error& error) {
     throw Error(error.code(), error.what(), {spheres_of_result(call.folder).string()});
@@ -339,6 +282,11 @@ Command measure_command() {
         "\"z = 1.5\", \"0.6 x + 0.8 z = 2\"; nothing else is measured",
         "PLANE"},
        needs({"-o,--output", &call->picture, "The file for the section", "FILE.svg"}, "--section"),
+       {"--slab", [call](const std::string& slab) { call->slab = slab; },
+        "Measure the packing fraction, the porosity along and around its axis, pores, g(r) and the contacts "
+        "of "
+        "this slab: \"z = 10..40\", \"x = -5 mm..5 mm\", \"z < 20\"",
+        "SLAB"},
        {"--local", &call->local,
         "Write the local packing fraction, the volume of the cell and the number of neighbours of every "
         "sphere into this table",
@@ -362,6 +310,7 @@ Command measure_command() {
            "its cell of the power diagram. In periodic boxes: g(r) and the structure factor S(k). "
            "Everywhere: how far it is from points in the pores to the nearest solid.",
        .examples = {{"bernal measure out", "everything, for people"},
+                    {"bernal measure out --slab \"z = 10..40\"", "of what lies between two heights"},
                     {"bernal measure out --json", "everything, for programs"},
                     {"bernal measure out --contacts contacts.csv --gap 0.001", "and every contact"},
                     {"bernal measure out --local cells.csv", "and a table of the cell of every sphere"},

@@ -47,24 +47,34 @@ std::string minimum_text(const WallProfile::Minimum& least, double diameter) {
 
 }  // namespace
 
-std::string part_of_bed(const Packing& packing, const std::optional<BedProfile>& bed) {
-  if (!bed || !bed->level) return {};
-  return fmt::format("; of the bed below {:.4g} {}", *bed->level, name_of(packing.scene.unit));
+std::string slab_text(const Packing& packing, const Slab& slab) {
+  return fmt::format("from {:.4g} to {:.4g} {} along ({:.3g})", slab.part.from, slab.part.height,
+                     name_of(packing.scene.unit), fmt::join(Vector<3>(-slab.part.direction), ", "));
 }
 
-void print_column(const Packing& packing, const ColumnProfile& column) {
+std::string part_text(const Packing& packing, const Measurements& measured) {
+  if (measured.slab) return "; of the slab " + slab_text(packing, *measured.slab);
+  if (!measured.bed || !measured.bed->level) return {};
+  return fmt::format("; of the bed below {:.4g} {}", *measured.bed->level, name_of(packing.scene.unit));
+}
+
+void print_column(const Packing& packing, const Measurements& measured) {
+  const ColumnProfile& column = *measured.column;
   const double d = column.mean_diameter;
-  fmt::print("\nporosity along the axis ({:.3g}), {:.3g} mean diameters from the floor to {}\n",
-             fmt::join(column.axis, ", "), column.top / d,
-             column.has_lid ? "the lid" : "the level of the bed");
+  const bool is_slab = measured.slab.has_value();
+  fmt::print("\nporosity along the axis ({:.3g}), {:.3g} mean diameters{}\n", fmt::join(column.axis, ", "),
+             (column.top - column.bottom) / d,
+             is_slab          ? part_text(packing, measured)
+             : column.has_lid ? " from the floor to the lid"
+                              : " from the floor to the level of the bed");
   std::vector<double> porosities;
   for (const ColumnProfile::Layer& layer : column.along) porosities.push_back(layer.porosity);
-  print_chart(porosities, 1, 6, fmt::format("{:.3g} diameters", column.top / d));
+  print_chart(porosities, 1, 6, fmt::format("{:.3g} diameters", (column.top - column.bottom) / d));
   if (const auto& side = column.side) {
     fmt::print(
-        "\nporosity over the distance z from the side alone, in mean diameters; the ends are left out:\n"
+        "\nporosity over the distance z from the side alone, in mean diameters; {}:\n"
         "from {:.4g} to {:.4g} {} above the floor\n",
-        side->from, side->to, name_of(packing.scene.unit));
+        is_slab ? "of the slab" : "the ends are left out", side->from, side->to, name_of(packing.scene.unit));
     print_profile(side->profile);
   }
   fmt::print("\n");
@@ -79,7 +89,7 @@ void print_column(const Packing& packing, const ColumnProfile& column) {
 void print_walls(const Packing& packing, const Measurements& measured) {
   const WallProfile& profile = *measured.walls;
   fmt::print("\nporosity over the distance z from the nearest wall, in mean diameters of {:.6g} {}{}\n",
-             profile.mean_diameter, name_of(packing.scene.unit), part_of_bed(packing, measured.bed));
+             profile.mean_diameter, name_of(packing.scene.unit), part_text(packing, measured));
   print_profile(profile);
   double error = 0;
   for (const WallProfile::Layer& layer : profile.layers) error = std::max(error, layer.error);

@@ -13,6 +13,7 @@
 #include "measure/even_points.hpp"
 #include "measure/localised.hpp"
 #include "measure/slices.hpp"
+#include "measure/volume_in.hpp"
 
 namespace bernal {
 namespace {
@@ -147,13 +148,6 @@ void scale(BedProfile& profile, double unit) {
   }
 }
 
-/// Whether the spheres can lie on a floor in this direction.
-bool has_floor(const Domain& domain, const Vector<3>& down) {
-  const int dimension = dimension_of(domain);
-  return has_walls(domain) && (dimension == 2 || dimension == 3) &&
-         down.cwiseProduct(boundary_of<3>(domain).edges).isZero(0);
-}
-
 }  // namespace
 
 std::optional<LowerPart> BedProfile::below_level() const {
@@ -167,7 +161,7 @@ std::optional<BedProfile> bed_profile(const Spheres<dynamic>& packed, const Doma
   const int dimension = dimension_of(domain);
   if (packed.empty() || dimension < 2 || dimension > 3) return {};
   const Vector<3> down = options.direction.value_or(-Vector<3>::Unit(dimension - 1)).normalized();
-  if (!has_floor(domain, down)) return {};
+  if (!has_ends_along(domain, down)) return {};
   const Frame frame = frame_of(domain);
   const std::shared_ptr<const Container> container = local_container(domain, made);
   const Spheres<3> spheres = localised(packed, frame);

@@ -1,12 +1,13 @@
 #include "bernal/measure/contacts.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
+#include "measure/coated.hpp"
 #include "measure/touching.hpp"
 
 namespace bernal {
@@ -14,8 +15,6 @@ namespace {
 
 /// Ranks are stored in a byte.
 constexpr std::size_t most_gaps = 256;
-/// Larger gap ratios are between spheres with others between them.
-constexpr double widest_of_all = 1;
 
 /// Neighbours of each sphere, in one flat list, with the rank of each pair; pairs of spheres and their own
 /// images are kept apart.
@@ -135,6 +134,22 @@ Contacts count(std::size_t spheres, const Domain& domain, const Neighbours& neig
   return contacts;
 }
 
+/// Each gap ratio once.
+std::vector<double> ascending_gaps(std::span<const double> contact_gaps) {
+  for (const double gap : contact_gaps) require_gap_ratio(gap);
+  std::vector<double> ascending(contact_gaps.begin(), contact_gaps.end());
+  std::ranges::sort(ascending);
+  const auto repeated = std::ranges::unique(ascending);
+  ascending.erase(repeated.begin(), repeated.end());
+  if (ascending.size() > most_gaps)
+    throw Error(ErrorCode::bad_argument, fmt::format("contacts of more than {} gaps at once", most_gaps));
+  return ascending;
+}
+
+std::uint32_t rank_of(double gap, const std::vector<double>& ascending) {
+  return static_cast<std::uint32_t>(std::ranges::lower_bound(ascending, gap) - ascending.begin());
+}
+
 }  // namespace
 
 Contacts measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain, double contact_gap) {
@@ -144,36 +159,41 @@ Contacts measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain,
 std::vector<Contacts> measure_contacts_across(double gap, double wall_gap, const Spheres<dynamic>& spheres,
                                               const Domain& domain, std::span<const double> contact_gaps,
                                               const std::shared_ptr<const Container>& made) {
-  if (gap == 0 && wall_gap == 0) return measure_contacts(spheres, domain, contact_gaps, made);
-  Spheres<dynamic> with_coats = spheres;
-  for (double& r : with_coats.r) r += 0.5 * gap;
-  return measure_contacts(with_coats, with_walls_moved(domain, wall_gap - 0.5 * gap), contact_gaps);
+  const Coated coated(spheres, domain, {.gap = gap, .wall_gap = wall_gap, .container = made});
+  return measure_contacts(*coated.spheres, *coated.domain, contact_gaps, coated.container);
 }
 
 std::vector<Contacts> measure_contacts(const Spheres<dynamic>& spheres, const Domain& domain,
                                        std::span<const double> contact_gaps,
                                        const std::shared_ptr<const Container>& made) {
   if (contact_gaps.empty()) return {};
-  for (const double gap : contact_gaps)
-    if (!(std::abs(gap) <= widest_of_all))
-      throw Error(ErrorCode::bad_argument,
-                  fmt::format("spheres touch below a gap ratio of 0 to {:g}, not {}", widest_of_all, gap));
-  std::vector<double> ascending(contact_gaps.begin(), contact_gaps.end());
-  std::ranges::sort(ascending);
-  const auto repeated = std::ranges::unique(ascending);
-  ascending.erase(repeated.begin(), repeated.end());
-  if (ascending.size() > most_gaps)
-    throw Error(ErrorCode::bad_argument, fmt::format("contacts of more than {} gaps at once", most_gaps));
+  const std::vector<double> ascending = ascending_gaps(contact_gaps);
   const Neighbours neighbours(spheres.size(), ranked_pairs(spheres, domain, ascending));
   const std::vector<NearWall> walls = near_walls(spheres, domain, ascending.back(), made);
   std::vector<Contacts> all(contact_gaps.size());
   parallel_for(all.size(), [&](std::size_t k) {
     const double gap = contact_gaps[k];
-    const auto rank =
-        static_cast<std::uint32_t>(std::ranges::lower_bound(ascending, gap) - ascending.begin());
-    all[k] = count(spheres.size(), domain, neighbours, rank, walls, gap);
+    all[k] = count(spheres.size(), domain, neighbours, rank_of(gap, ascending), walls, gap);
   });
   return all;
+}
+
+ContactsOfSome contacts_of_some(const std::vector<bool>& counted, double gap, const Spheres<dynamic>& spheres,
+                                const Domain& domain, std::span<const double> contact_gaps) {
+  ContactsOfSome found;
+  if (contact_gaps.empty()) return found;
+  const std::vector<double> ascending = ascending_gaps(contact_gaps);
+  std::vector<std::uint64_t> ends(ascending.size(), 0);  // of pairs, by rank
+  const Coated coated(spheres, domain, {.gap = gap});
+  for (const auto& part : ranked_pairs(*coated.spheres, *coated.domain, ascending))
+    for (const RankedPair& pair : part)
+      for (const std::uint32_t end : {pair.first, pair.second}) ends[pair.rank] += counted[end];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  found.spheres = static_cast<std::uint64_t>(std::ranges::count(counted, true));
+  const double n = std::max(1.0, static_cast<double>(found.spheres));
+  for (const double at : contact_gaps)
+    found.by_gap.push_back({at, static_cast<double>(ends[rank_of(at, ascending)]) / n});
+  return found;
 }
 
 }  // namespace bernal

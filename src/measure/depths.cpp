@@ -8,7 +8,7 @@
 #include "bernal/core/random.hpp"
 #include "core/parallel.hpp"
 #include "domain/places.hpp"
-#include "domain/volume_below.hpp"
+#include "measure/volume_in.hpp"
 
 namespace bernal {
 namespace {
@@ -98,16 +98,15 @@ std::vector<double> sample(const Container& container, double reach, std::size_t
   return depths;
 }
 
-double volume_in(const Domain& shape, const LowerPart& part) {
-  const VolumeBelow below(shape, part.direction);
-  return below(part.height) - (part.from > below.lowest() ? below(part.from) : 0);
+double volume_in(const LowerPart& part, const Domain& shape) {
+  return volume_in(part, VolumeBelow(shape, part.direction));
 }
 
 }  // namespace
 
 Depths::Depths(const Domain& shape, const Container& container, double reach, std::size_t points,
                const std::optional<LowerPart>& below)
-    : below_(below), volume_(below ? volume_in(shape, *below) : container.volume()) {
+    : below_(below), volume_(below ? volume_in(*below, shape) : container.volume()) {
   if (std::holds_alternative<Mesh>(shape) || std::holds_alternative<Revolved>(shape)) {
     shape_ = Mesh{};
     sampled_ = sample(container, reach, points, below, volume_);
@@ -135,7 +134,7 @@ double Depths::inner_share(double z) const {
   const double whole =
       std::visit([z](const auto& s) { return inner_volume(s, z) / inner_volume(s, 0); }, shape_);
   if (!below_ || !(whole > 0)) return whole;
-  const double part = volume_in(with_walls_moved(shape_, z), *below_) / volume_;
+  const double part = volume_in(*below_, with_walls_moved(shape_, z)) / volume_;
   return part > rounding_of_shares ? part : 0;
 }
 

@@ -1,5 +1,6 @@
 #include "bernal/measure/measure.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -59,6 +60,20 @@ void require_measurable(const Spheres<dynamic>& spheres) {
   }
 }
 
+/// Marks for the spheres in the core; empty if there is none.
+std::vector<bool> spheres_in_core(const Spheres<dynamic>& spheres, const Measurements& measured) {
+  const auto& bed = measured.bed;
+  if (!measured.walls || (bed && !bed->core)) return {};
+  const auto is_in_bed = [&](const Vector<3>& center) {
+    const double height = bed ? -bed->direction.dot(center) - bed->lowest : 0;
+    return !bed || (bed->core->from <= height && height <= bed->core->to);
+  };
+  std::vector<bool> inside(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    inside[i] = measured.walls->regions[i] == Region::core && is_in_bed(spheres.center(i));
+  return std::ranges::find(inside, true) == inside.end() ? std::vector<bool>{} : inside;
+}
+
 }  // namespace
 
 Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, const AskedRadii& asked,
@@ -79,6 +94,7 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   measured.by_gap.pop_back();
   measured.of_contacts =
       contact_sums(spheres, domain, {options.contact_gap, options.gap, options.wall_gap, container});
+  if (options.slab) measured.slab = measure_slab(*options.slab, spheres, domain, gaps, options.gap);
   try {
     const Interruptible listening(options.monitor);
     measured.size_correlation = size_correlation(spheres, domain, options.size_correlation);
@@ -88,13 +104,14 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
     bed.wall_gap = options.wall_gap;
     measured.bed = bed_profile(spheres, domain, bed, container);
     RadialOptions radial = options.radial;
-    if (measured.bed) radial.below = measured.bed->below_level();
-    measured.radial = radial_distribution(spheres, domain, radial, container);
     WallOptions walls = options.walls;
     PoreOptions pores = options.pores;
-    if (measured.bed) walls.below = pores.below = measured.bed->below_level();
+    if (const auto part = measured.part()) radial.below = walls.below = pores.below = part;
+    measured.radial = radial_distribution(spheres, domain, radial, container);
     measured.walls = wall_profile(spheres, domain, walls, container);
-    ColumnOptions column{.down = options.bed.direction, .side = options.walls};
+    if (const std::vector<bool> core = spheres_in_core(spheres, measured); !core.empty())
+      measured.core_contacts = contacts_of_some(core, options.gap, spheres, domain, gaps);
+    ColumnOptions column{.down = options.bed.direction, .slab = options.slab, .side = options.walls};
     if (measured.bed) column.level = measured.bed->level;
     measured.column = column_profile(spheres, domain, column);
     measured.order =

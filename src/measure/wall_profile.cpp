@@ -9,10 +9,10 @@
 #include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
 #include "core/parallel.hpp"
-#include "domain/ball_below.hpp"
 #include "measure/depths.hpp"
 #include "measure/even_points.hpp"
 #include "measure/localised.hpp"
+#include "measure/volume_in.hpp"
 
 namespace bernal {
 namespace {
@@ -87,11 +87,6 @@ std::vector<double> clearances(const Container& container, const Spheres<3>& sph
   return found;
 }
 
-double volume_in(const LowerPart& part, const Vector<3>& center, double r) {
-  const double z = part.height_of(center);
-  return ball_below(3, r, part.height - z) - ball_below(3, r, part.from - z);
-}
-
 /// Spreads the volumes of the spheres over the zones; spheres beyond reach count whole. Parts above the level
 /// are left out.
 std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
@@ -106,7 +101,7 @@ std::vector<Filling> fill(const Container& container, const Spheres<3>& spheres,
          ++i) {
       throw_if_interrupted();
       const double r = spheres.r[i];
-      const double v = below ? volume_in(*below, spheres.center(i), r) : ball_volume(3, r);
+      const double v = below ? ball_in(*below, 3, spheres.center(i), r) : ball_volume(3, r);
       if (!(v > 0)) continue;
       const bool cut = v < ball_volume(3, r);
       std::ranges::fill(inside, 0u);
@@ -190,12 +185,6 @@ class Volumes {
   double mean_ = 0, squares_ = 0;
 };
 
-double filled_below(const Spheres<3>& spheres, const LowerPart& below) {
-  double sum = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i) sum += volume_in(below, spheres.center(i), spheres.r[i]);
-  return sum;
-}
-
 Region region_of(double clearance, double r, const Zones& zones) {
   if (clearance - r < zones.near) return Region::near_wall;
   return clearance >= zones.core ? Region::core : Region::between;
@@ -260,7 +249,7 @@ std::optional<WallProfile> wall_profile(const Spheres<dynamic>& packed, const Do
   }
   profile.mean_diameter = in_scene(diameter);
   profile.mean_porosity =
-      below ? 1 - filled_below(spheres, *below) / volume : 1 - packing_fraction(packed, domain);
+      below ? 1 - filled_in(*below, 3, spheres) / volume : 1 - packing_fraction(packed, domain);
   const double near_share = 1 - depths.deeper(zones.near), core_share = depths.deeper(zones.core);
   profile.near_wall_packing_fraction = fraction_of(filling[zones.near_zone()], near_share, 0, volume).value;
   const Fraction core =

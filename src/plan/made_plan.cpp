@@ -1,7 +1,9 @@
 #include "plan/made_plan.hpp"
 
 #include <cmath>
+#include <optional>
 #include <typeinfo>
+#include <utility>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
@@ -23,24 +25,21 @@ Plan plan_of_largest(const Scene& stated) {
   const double volume = static_cast<double>(*scene.target.count) * ball_volume(dimension, 1) *
                         radii_of(scene)->moment(dimension);
   const double room = volume_of(domain_of(scene));
-  for (double share = first_share;; share /= 2) {
+  std::optional<Plan> plan;
+  for (double share = first_share; !plan && share > least_share; share /= 2) {  // the largest of many sizes
     scene.scale = std::pow(share * room / volume, 1.0 / dimension);
-    try {
-      Plan plan = made_plan(scene);
-      plan.expected_packing_fraction = plan.attainable_packing_fraction;
-      plan.items.push_back(
-          {.name = "search",
-           .what = "the same for larger and larger spheres, and for sizes in between, from several "
-                   "beginnings each, until the largest are known to 1e-4",
-           .cost = "some 100 runs",
-           .seconds = runs * (dear * plan.expected_seconds + least_seconds)});
-      plan.expected_seconds += plan.items.back().seconds;
-      return plan;
-    } catch (
-        const Error&) {  // the largest of many sizes do not fit, or what only looks so is another mistake
-      if (share < least_share) throw;
-    }
+    plan = made_plan_where_all_fit(scene);
   }
+  if (!plan) plan = made_plan(scene);  // which says why they do not fit
+  plan->expected_packing_fraction = plan->attainable_packing_fraction;
+  plan->items.push_back({.name = "search",
+                         .what =
+                             "the same for larger and larger spheres, and for sizes in between, from several "
+                             "beginnings each, until the largest are known to 1e-4",
+                         .cost = "some 100 runs",
+                         .seconds = runs * (dear * plan->expected_seconds + least_seconds)});
+  plan->expected_seconds += plan->items.back().seconds;
+  return std::move(*plan);
 }
 
 }  // namespace

@@ -97,13 +97,14 @@ py::dict per_sphere(const Measurements& measured) {
   return all;
 }
 
-JobPointer measure_job(const PackingPointer& of, double contact_gap) {
+JobPointer measure_job(const PackingPointer& of, double contact_gap, const Text& slab) {
   return job([=](const Monitor& monitor) -> Job::Finish {
     const SceneRadii radii = asked_radii_of(*of);
     MeasureOptions options;
     options.gap = of->scene.gap;
     options.wall_gap = of->scene.wall_gap;
     options.contact_gap = contact_gap;
+    if (slab) options.slab = slab_in(*slab, of->scene.unit);
     options.bed = bed_options_of(of->scene);
     options.container = of->container;
     options.monitor = monitor;

@@ -38,6 +38,7 @@ TYPES = {
     "flag": "bool", "integer": "int", "number": "float", "length": "float", "word": "str", "file": "Any",
     "names": "Any", "points": PAIRS, "lines": f"Sequence[{PAIRS}]", "axes": "Sequence[int]",
     "distribution": "float | Sizes", "parts": "Sequence[float | Sizes]",
+    "solids": "Any",
 }  # fmt: skip
 SPECIAL = ("__init__", "__len__", "__bool__", "__str__", "__float__", "__getattr__")
 

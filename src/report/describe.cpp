@@ -45,6 +45,7 @@ std::string describe(const Plan& plan) {
                         plan.scene.stages.front().name(), n == 1 ? "it" : "them");
   text += fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
   if (!plan.caution.empty()) text += fmt::format("caution    {}\n", plan.caution);
+  for (const std::string& hint : plan.hints) text += fmt::format("note       {}\n", hint);
   if (plan.scene.asks_for_gaps())
     text += fmt::format(
         "gaps       at least {:g} {} between spheres{}\n", plan.scene.gap, name_of(plan.scene.unit),

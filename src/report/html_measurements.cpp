@@ -26,13 +26,18 @@ void write_by_gap(Page& page, const Measurements& measured) {
   page.raw(
       "<div class=\"wide\"><table><caption>How the counts depend on the gap that counts as touching</caption>"
       "<tr><th>gap</th><th class=\"n\">contacts</th><th class=\"n\">coordination</th>"
-      "<th class=\"n\">rattlers</th><th class=\"n\">backbone contacts</th></tr>\n");
-  for (const Contacts& c : measured.by_gap) {
+      "<th class=\"n\">rattlers</th><th class=\"n\">backbone contacts</th>");
+  const auto& core = measured.core_contacts;
+  page.raw(core ? "<th class=\"n\">coordination in the core</th></tr>\n" : "</tr>\n");
+  for (std::size_t k = 0; k < measured.by_gap.size(); ++k) {
+    const Contacts& c = measured.by_gap[k];
     page.add(
         "<tr><td>{:.0e}</td><td class=\"n\">{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{}</td><td "
-        "class=\"n\">{}</td></tr>\n",
+        "class=\"n\">{}</td>",
         c.contact_gap, grouped(c.pairs), c.coordination, measured.holds(c) ? grouped(c.rattlers) : "–",
         measured.holds(c) ? grouped(c.backbone_contacts()) : "–");
+    if (core) page.add("<td class=\"n\">{:.3f}</td>", core->by_gap[k].coordination);
+    page.raw("</tr>\n");
   }
   page.raw("</table></div>\n");
 }
@@ -179,6 +184,12 @@ void write_contacts(Page& page, const Report& report) {
   page.row("coordination", fmt::format("{:.3f}", c.coordination),
            "how many spheres touch a sphere, on average");
   const Measurements& measured = report.measured;
+  if (const auto& core = measured.core_contacts)
+    page.row("coordination in the core", fmt::format("{:.3f}", core->by_gap.back().coordination),
+             fmt::format("of {} spheres, {}", grouped(core->spheres),
+                         measured.walls->has_core ? fmt::format("{:g} mean diameters or more from the walls",
+                                                                WallProfile::core_depth)
+                                                  : "in the deeper half: it is too narrow for a core"));
   if (measured.holds(c)) {
     page.row(
         "rattlers", grouped(c.rattlers),

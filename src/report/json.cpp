@@ -12,6 +12,7 @@ namespace bernal {
 
 BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
+BERNAL_KEYS(Packing::BulkDensity, asked, reached)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
 
 /// An effect that is only counted is timed within another.
@@ -110,9 +111,11 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
           {"unit", name_of(packing.scene.unit)},
           {"phi", packing_fraction},
           {"mass", mass ? Json(*mass) : Json()},
+          {"bulk_density", packing.bulk_density},
           {"expected_phi", packing.expected_packing_fraction},
           {"expected_phi_of_sizes", packing.expected_of_sizes},
           {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},
+          {"notes", packing.hints},
           {"size_scale", packing.size_scale}};
 }
 

@@ -23,6 +23,7 @@ BERNAL_KEYS(Bounds<3>, lower, upper)
 BERNAL_KEYS(BondOrder, all, mean_q6, q6_error, near_wall, core)
 BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
 BERNAL_KEYS(ColumnProfile::Layer, from, to, porosity)
+BERNAL_KEYS(ContactsOfSome::At, contact_gap, coordination)
 BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
 BERNAL_KEYS(LocalPacking::Quantile, share, packing_fraction)
 BERNAL_KEYS(PoreSizes::Quantile, share, distance)
@@ -58,6 +59,11 @@ static void to_json(Json& json, const Contacts& contacts) {
             {"wall_contacts", contacts.backbone_walls},
             {"coordination", contacts.backbone_coordination},
             {"isostatic_contacts", contacts.isostatic}}}};
+}
+
+/// At the gap that counts, without the others.
+static void to_json(Json& json, const ContactsOfSome& some) {
+  json = {{"spheres", some.spheres}, {"coordination", some.by_gap.back().coordination}};
 }
 
 /// Rattlers only if their number is meaningful.
@@ -250,6 +256,7 @@ std::string text_of(const Json& json) {
 Json measured_figures(const Measurements& measured) {
   Json json = contacts_json(measured, measured.contacts);
   json.update({{"held_from_gap", measured.held_from},
+               {"core_contacts", measured.core_contacts},
                {"crystalline", measured.order},
                {"size_correlation", measured.size_correlation},
                {"chambers", measured.chambers},
@@ -276,6 +283,19 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
   json["by_gap"] = Json::array();
   for (const Contacts& contacts : measured.by_gap)
     json["by_gap"].push_back(contacts_json(measured, contacts));
+  const auto with_gaps = [](const ContactsOfSome& some) {
+    Json all = some;
+    all["by_gap"] = some.by_gap;
+    return all;
+  };
+  json["core_contacts"] = measured.core_contacts ? with_gaps(*measured.core_contacts) : Json();
+  json["slab"] = Json();
+  if (const auto& slab = measured.slab)
+    json["slab"] = {{"direction", Vector<3>(-slab->part.direction)},
+                    {"from", slab->part.from},
+                    {"to", slab->part.height},
+                    {"phi", slab->packing_fraction},
+                    {"contacts", with_gaps(slab->contacts)}};
   json["g_r"] = measured.radial;
   json["size_correlation"] = measured.size_correlation;
   json["crystalline"] = measured.order;

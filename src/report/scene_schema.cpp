@@ -14,6 +14,7 @@
 #include "bernal/core/vector.hpp"
 #include "bernal/report/json.hpp"
 #include "bernal/scene/scene_reference.hpp"
+#include "scene/scene_entries.hpp"
 
 namespace bernal {
 namespace {
@@ -84,6 +85,7 @@ SceneSchema basic_definitions() {
       {"shares", array_of(refers_to("positive"), 1)},
       {"amounts", array_of({{"anyOf", {SceneSchema{{"const", 0}}, refers_to("positive")}}}, 1)},
       {"axes", axes},
+      {"solids", {{"anyOf", {refers_to("file"), array_of(refers_to("solid"), 1)}}}},
   };
 }
 
@@ -119,6 +121,8 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
                                                                    : key.type);
   if (const auto text = measured_text(key.quantity); text && key.type == "number")
     value = either(std::move(value), *text);
+  else if (text && key.type == "shares")
+    value = array_of(either(refers_to("positive"), *text), 1);
   if (key.words.empty()) return value;
   const SceneSchema word = one_of_words(key);
   if (key.type == "names") return {{"anyOf", {word, array_of(word, 1)}}};
@@ -242,6 +246,9 @@ std::string scene_schema_as_json() {
   SceneSchema& sizes = tables.at("spheres").at("allOf").back();
   sizes.at("anyOf").push_back(
       {{"required", {"start"}}, {"properties", {{"radius", false}, {"diameter", false}}}});
+  definitions["solid"]["anyOf"].push_back(refers_to("file"));
+  for (const KnownWord& kind : schema::kinds_of_solids())
+    definitions["solid"]["anyOf"].push_back(refers_to(fmt::format("container_{}", kind.name)));
   SceneSchema& properties = scene.at("properties");
   properties["container"] = refers_to("container");
   properties["container"]["description"] = "what the spheres lie in";

@@ -125,6 +125,7 @@ const std::map<Type, Rule> rules = {
     {Type::axes, {"an array of axes, counted from 0, each once", are_axes, false}},
     {Type::distribution, {"a positive length or a table { distribution = … }", are_sizes}},
     {Type::parts, {"an array of lengths and tables { distribution = … }", are_sizes, false}},
+    {Type::solids, {"an array of files and of tables { kind = … }", is_file, false}},
 };
 
 const Rule& rule_of(const Key& key) {

@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "scene/complete_sizes.hpp"
+#include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
@@ -330,6 +331,27 @@ bool StageTraits::works_in(const Scene& scene) const {
   return in_box && (box_between_walls || box.walls.empty());
 }
 
+/// Of an obstacle, or of a container what it has in common with these.
+static void check_solid(const SceneContainer& solid, const std::string& name, bool is_obstacle) {
+  const Section section{name, solid.locations};
+  const Entry& entry = schema::entry_of(solid);
+  const auto* box = std::get_if<Box>(&solid);
+  const auto* cylinder = std::get_if<Cylinder>(&solid);
+  const bool is_bounded = (!box || box->dimension() == 3) && (!cylinder || !cylinder->periodic);
+  if ((is_obstacle || !solid.obstacles.empty()) && !(is_bounded && entry.find("obstacles")))
+    section.fail("obstacles", name + ": what has obstacles, or is one, has three dimensions and no periods");
+  if (is_obstacle) check(entry, schema::options_of(solid), section);
+  if (solid.rounding == 0) return;
+  if (is_obstacle || !is_bounded || !entry.find("rounding"))
+    section.refuse("rounding",
+                   "is for boxes of three dimensions and cylinders without periods; leave it out");
+  const double most = box ? 0.5 * box->size.minCoeff() : std::min(cylinder->radius, 0.5 * cylinder->height);
+  if (!(solid.rounding > 0 && solid.rounding <= most))
+    section.refuse("rounding", fmt::format("must be above 0 and at most {}, with which nothing straight is "
+                                           "left of an edge, not {}",
+                                           most, solid.rounding));
+}
+
 void complete(Scene& scene) {
   complete_density(scene);
   for (const Entry* entry : schema::own_entries())
@@ -339,6 +361,10 @@ void complete(Scene& scene) {
   const Section section{"[container]", scene.container.locations};
   check(container, schema::options_of(std::as_const(scene.container)), section);
   if (container.complete) container.complete(schema::options_of(scene.container), scene, section);
+  for (std::size_t k = 0; k < scene.container.obstacles.size(); ++k)
+    check_solid(scene.container.obstacles[k], fmt::format("solid {} of obstacles of [container]", k + 1),
+                true);
+  check_solid(scene.container, "[container]", false);
   take_porosity(scene);
   complete_list(scene);
   check_target(scene);
@@ -362,13 +388,10 @@ const StageTable& table_of(const Stage& stage) {
 std::string_view Stage::name() const { return table_of(*this).name(); }
 
 Stage stage_named(std::string_view name) {
-  std::vector<std::string_view> names;
-  for (const StageTable* table : stage_tables()) {
+  for (const StageTable* table : stage_tables())
     if (table->name() == name) return table->make();
-    names.push_back(table->name());
-  }
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("unknown stage {}{}", toml_string(name), remedy(name, names)));
+  throw Error(ErrorCode::bad_argument, fmt::format("unknown stage {}{}", toml_string(name),
+                                                   remedy_of_word(name, known_words_in(stage_tables()))));
 }
 
 }  // namespace bernal

@@ -46,6 +46,7 @@ enum class Type {
   axes,          ///< array of axes, counted from 0, each once
   distribution,  ///< a length, or a table of one of the distributions
   parts,         ///< array of distributions
+  solids,        ///< array of files of closed surfaces and of tables of containers, or one file
 };
 
 struct Range {
@@ -133,7 +134,8 @@ enum class Acts { everywhere, in_bed, in_box };
 struct Key {
   std::string_view name;
   Type type;
-  Member member = {};  ///< none of a key that the reader replaces by others
+  /// None of a key that the reader replaces by others, nor of what any container may have.
+  Member member = {};
   std::string_view help = {};
   Range range = {};
   std::vector<std::string_view> words = {};

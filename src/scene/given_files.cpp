@@ -13,8 +13,19 @@ namespace bernal {
 namespace {
 
 const PolygonSurface* surface_given(const Scene& scene, const std::filesystem::path& name) {
-  const auto* mesh = std::get_if<MeshFile>(&scene.container);
-  return mesh ? mesh->surface_called(name) : nullptr;
+  for (const MeshFile* mesh : scene.container.meshes())
+    if (const PolygonSurface* surface = mesh->surface_called(name)) return surface;
+  return nullptr;
+}
+
+/// Of a container that may be const.
+template <class Mesh, class Container>
+std::vector<Mesh*> meshes_in(Container& container) {
+  std::vector<Mesh*> all;
+  if (auto* own = std::get_if<MeshFile>(&container)) all.push_back(own);
+  for (auto& obstacle : container.obstacles)
+    if (auto* mesh = std::get_if<MeshFile>(&obstacle)) all.push_back(mesh);
+  return all;
 }
 
 const Spheres<dynamic>* spheres_given(const Scene& scene, const std::filesystem::path& name) {
@@ -69,6 +80,9 @@ std::string as_npy(const Spheres<dynamic>& spheres) {
 
 }  // namespace
 
+std::vector<MeshFile*> SceneContainer::meshes() { return meshes_in<MeshFile>(*this); }
+std::vector<const MeshFile*> SceneContainer::meshes() const { return meshes_in<const MeshFile>(*this); }
+
 bool is_given(const Scene& scene, const std::filesystem::path& name) {
   return surface_given(scene, name) || spheres_given(scene, name) || list_given(scene.sizes, name);
 }
@@ -82,10 +96,8 @@ std::optional<std::string> content_given(const Scene& scene, const std::filesyst
 
 std::vector<std::filesystem::path*> files_named_in(Scene& scene) {
   std::vector<std::filesystem::path*> files;
-  if (auto* mesh = std::get_if<MeshFile>(&scene.container)) {
-    files.push_back(&mesh->file);
-    for (std::filesystem::path& file : mesh->obstacles) files.push_back(&file);
-  }
+  for (MeshFile* mesh : scene.container.meshes())
+    for (std::filesystem::path* file : mesh->files()) files.push_back(file);
   if (scene.start.file) files.push_back(&*scene.start.file);
   for_each_list(scene.sizes, [&](ListedSizes& list) {
     if (!list.beside.empty()) files.push_back(&list.beside);

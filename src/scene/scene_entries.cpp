@@ -151,20 +151,6 @@ Member repair() {
   return member;
 }
 
-Member obstacles() {
-  Member member;
-  member.get = [](const void* mesh) {
-    std::vector<std::string> all;
-    for (const auto& file : static_cast<const MeshFile*>(mesh)->obstacles) all.push_back(file.string());
-    return value_of(all);
-  };
-  member.set = [](void* mesh, const Value& value) {
-    const auto& all = std::get<std::vector<std::string>>(value);
-    static_cast<MeshFile*>(mesh)->obstacles = {all.begin(), all.end()};
-  };
-  return member;
-}
-
 void mesh_rule(const MeshFile& mesh, const Section& section) {
   if (mesh.ignore_unit_of_file && !mesh.unit)
     section.refuse("ignore_unit_of_file", "needs a \"unit\" beside it, that of the file's coordinates");
@@ -176,6 +162,25 @@ void mesh_rule(const MeshFile& mesh, const Section& section) {
 }
 
 }  // namespace
+
+Key obstacles_key() {
+  return {.name = "obstacles",
+          .type = Type::solids,
+          .help =
+              "what is taken out of it: files of closed surfaces, and tables such as { kind = \"cylinder\", "
+              "radius = 1, height = 9 }"};
+}
+
+Key rounding_key() {
+  return length({}, "rounding", "its edges are rounded with this radius; if absent they are sharp");
+}
+
+std::vector<KnownWord> kinds_of_solids() {
+  std::vector<KnownWord> kinds;
+  for (const Entry& entry : container_entries())
+    if (entry.find("obstacles")) kinds.emplace_back(entry.name, entry.help);
+  return kinds;
+}
 
 const Entry& scene_entry() {
   static const Entry made = entry<Scene>(
@@ -302,7 +307,8 @@ const std::vector<Entry>& container_entries() {
       entry<Box>({.name = "box",
                   .help = "a box along the axes; with two edges a rectangle, for discs",
                   .keys = {required(key(Type::extents, &Box::size, "size", "its edges")),
-                           key(Type::corner, &Box::corner, "corner", "its lowest corner")},
+                           key(Type::corner, &Box::corner, "corner", "its lowest corner"), rounding_key(),
+                           obstacles_key()},
                   .rule = rule(box_rule),
                   .complete = completion(complete_box)}),
       entry<Cylinder>(
@@ -315,7 +321,8 @@ const std::vector<Entry>& container_entries() {
                     key(Type::position, &Cylinder::base, "base", "the middle of its base"),
                     flag(&Cylinder::periodic, "periodic",
                          "true: no lids, an endless column that repeats itself with the period height; its "
-                         "axis lies along x, y or z")},
+                         "axis lies along x, y or z"),
+                    rounding_key(), obstacles_key()},
            .rule = rule(cylinder_rule)}),
       entry<MeshFile>(
           {.name = "mesh",
@@ -332,7 +339,7 @@ const std::vector<Entry>& container_entries() {
                                 words(up_words))),
                     names(&MeshFile::solids, "solids",
                           "those of the file's solids that are meant, by name or by number from 1"),
-                    names(obstacles(), "obstacles", "files of closed surfaces that are taken out of it"),
+                    obstacles_key(),
                     length(&MeshFile::weld, "weld",
                            "corners of open edges up to this far apart are one; if absent, what rounding "
                            "explains"),
@@ -360,10 +367,11 @@ const std::vector<Entry>& container_entries() {
                           "they are refused; a result names it; a glTF counts together with its buffers, "
                           "cat part.gltf part.bin | sha256sum")},
            .rule = rule(mesh_rule)}),
-      entry<Sphere>({.name = "sphere",
-                     .help = "a sphere",
-                     .keys = {required(length(&Sphere::radius, "radius", "its radius")),
-                              key(Type::position, &Sphere::center, "center", "its centre")}}),
+      entry<Sphere>(
+          {.name = "sphere",
+           .help = "a sphere",
+           .keys = {required(length(&Sphere::radius, "radius", "its radius")),
+                    key(Type::position, &Sphere::center, "center", "its centre"), obstacles_key()}}),
       entry<PeriodicBox>(
           {.name = "periodic",
            .help = "a box that repeats itself in all directions, or in all but those with walls",

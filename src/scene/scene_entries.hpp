@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "scene/entry.hpp"
+#include "scene/known_words.hpp"
 
 namespace bernal::schema {
 
@@ -25,6 +26,12 @@ Entry tube_entry();
 Entry lathed_entry();
 Entry extruded_entry();
 
+/// Keys of a SceneContainer: what it may have taken out of it, and the radius of its edges.
+Key obstacles_key();
+Key rounding_key();
+/// Those that may have obstacles, and be such themselves.
+std::vector<KnownWord> kinds_of_solids();
+
 /// What stands for a key that a distribution has not but other programs have, "; write …"; empty where
 /// nothing is known of it. `number` is what the table gives to a key.
 std::string instead_of(const Entry& sizes, std::string_view key,
@@ -33,9 +40,11 @@ std::string instead_of(const Entry& sizes, std::string_view key,
 inline const Entry& entry_of(const SceneContainer& container) {
   return container_entries()[container.index()];
 }
-/// What to call a container: a shape that is no Domain of its own by the scene's word.
+/// What to call a container: a shape that is no Domain of its own, and one that obstacles or a rounding made
+/// another, by the scene's word.
 inline std::string_view word_of(const SceneContainer& container, const Domain& domain) {
-  const bool is_shape = std::holds_alternative<Cone>(container) || std::holds_alternative<Tube>(container) ||
+  const bool is_shape = container.rounding > 0 || !container.obstacles.empty() ||
+                        std::holds_alternative<Cone>(container) || std::holds_alternative<Tube>(container) ||
                         std::holds_alternative<Lathed>(container) ||
                         std::holds_alternative<Extruded>(container);
   return is_shape ? entry_of(container).name : kind_of(domain);

@@ -12,10 +12,10 @@ using schema::Entry;
 
 /// In the order of schema::Type.
 constexpr std::string_view type_words[] = {
-    "flag",        "integer",  "number", "length",  "word",    "file",         "direction",
-    "push",        "position", "names",  "corner",  "extents", "points",       "lines",
-    "coordinates", "lengths",  "shares", "amounts", "axes",    "distribution", "parts"};
-static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::parts) + 1);
+    "flag",     "integer", "number", "length",       "word",   "file",  "direction",   "push",
+    "position", "names",   "corner", "extents",      "points", "lines", "coordinates", "lengths",
+    "shares",   "amounts", "axes",   "distribution", "parts",  "solids"};
+static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::solids) + 1);
 /// In the order of schema::Acts.
 constexpr std::string_view acts_words[] = {"everywhere", "in_bed", "in_box"};
 /// In the order of Quantity.

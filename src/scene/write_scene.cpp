@@ -90,10 +90,23 @@ std::string engine_as_toml(const SceneEngine& engine) {
                      lines(entry, schema::options_of(engine)));
 }
 
+/// Without the kind.
+std::vector<std::string> assignments_of(const SceneContainer& container) {
+  std::vector<std::string> all = assignments(schema::entry_of(container), schema::options_of(container));
+  if (container.rounding > 0) all.push_back(fmt::format("rounding = {}", container.rounding));
+  std::vector<std::string> obstacles;
+  if (const auto* mesh = std::get_if<MeshFile>(&container))
+    for (const std::filesystem::path& file : mesh->obstacles) obstacles.push_back(toml_string(file.string()));
+  for (const SceneContainer& solid : container.obstacles)
+    obstacles.push_back(fmt::format("{{ kind = {}, {} }}", toml_string(schema::entry_of(solid).name),
+                                    fmt::join(assignments_of(solid), ", ")));
+  if (!obstacles.empty()) all.push_back(fmt::format("obstacles = [{}]", fmt::join(obstacles, ", ")));
+  return all;
+}
+
 std::string container_as_toml(const SceneContainer& container) {
-  const schema::Entry& entry = schema::entry_of(container);
-  return fmt::format("[container]\nkind = {}\n{}", toml_string(entry.name),
-                     lines(entry, schema::options_of(container)));
+  return fmt::format("[container]\nkind = {}\n{}\n", toml_string(schema::entry_of(container).name),
+                     fmt::join(assignments_of(container), "\n"));
 }
 
 /// "median 1", for a key and its value.

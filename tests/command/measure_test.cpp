@@ -218,6 +218,37 @@ TEST_F(Measure, MeasuresContainersWithoutAReferenceDensity) {
             measured.at("backbone").at("spheres") == 0);
   EXPECT_EQ(measured.at("held_from_gap"), report.at("held_from_gap"));
   EXPECT_EQ(report.at("size_scale"), 1);
+  EXPECT_EQ(measured.at("core_contacts").at("coordination"), report.at("core_contacts").at("coordination"));
+  EXPECT_EQ(measured.at("core_contacts").at("by_gap").size(), 10u);
+}
+
+TEST_F(Measure, OfASlabIsWhatLiesInIt) {
+  const std::string box = folder.write("box.toml", small_scene).string(), out = (folder / "out").string();
+  ASSERT_EQ(bernal({"pack", box, "-o", out, "--quiet"}).status, 0);
+  const Ended text = bernal({"measure", out, "--slab", "z = 0.2 cm..5"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  for (const std::string part :
+       {"in the slab     ", "from 2 to 5 mm along (0, 0, 1)", "whose centres lie in it",
+        "of the slab from 2 to 5 mm", "porosity along the axis (0, 0, 1), 3 mean diameters",
+        "from 2 to 5 mm above the floor"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << part << "\nis not in\n" << text.out;
+  double spheres = 0, filled = 0;
+  for (const auto& [slab, thickness] : {std::pair("z < 2", 2.0), {"z = 2..5", 3.0}, {"z > 5 mm", 5.0}}) {
+    const auto measured = nlohmann::json::parse(bernal({"measure", out, "--json", "--slab", slab}).out);
+    EXPECT_EQ(measured.at("slab").at("direction"), nlohmann::json::parse("[0.0, 0.0, 1.0]"));
+    spheres += measured.at("slab").at("contacts").at("spheres").get<double>();
+    filled += 100 * thickness * measured.at("slab").at("phi").get<double>();
+    EXPECT_NEAR(measured.at("walls").at("mean_porosity").get<double>(),
+                1 - measured.at("slab").at("phi").get<double>(), 1e-9);
+  }
+  const auto whole = nlohmann::json::parse(bernal({"measure", out, "--json"}).out);
+  EXPECT_EQ(spheres, 300);
+  EXPECT_NEAR(filled, 1000 * whole.at("phi").get<double>(), 1e-6);
+  EXPECT_TRUE(whole.at("slab").is_null());
+  for (const char* slab : {"z = 5", "below", "z = 5..2"})
+    expect_refused_in_one_line(bernal({"measure", out, "--slab", slab}), {slab, "is no slab", "z = 10..40"});
+  expect_refused_in_one_line(bernal({"measure", out, "--slab", "x > 10"}),
+                             {"holds nothing of the box", "0 to 10"});
 }
 
 TEST_F(Measure, BadInputIsOneLine) {

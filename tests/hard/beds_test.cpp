@@ -6,6 +6,10 @@
 
 #include "bernal/measure/rest.hpp"
 #include "bernal/run/run.hpp"
+#include "bernal/settle/compress.hpp"
+#include "settle/roll_to_rest.hpp"
+#include "support/folder.hpp"
+#include "support/meshes.hpp"
 #include "support/plain_check.hpp"
 #include "support/plans.hpp"
 
@@ -64,7 +68,11 @@ TEST(Beds, RestInAnyVessel) {
                                  "kind = \"cylinder\"\nradius = 2.0\nheight = 7\naxis = [0.3, -0.8, 0.4]",
                                  "kind = \"sphere\"\nradius = 3.1",
                                  "kind = \"box\"\nsize = [4.2, 3.1, 8]",
-                                 "kind = \"periodic\"\nsize = [5, 6, 7]\nwalls = [2]"};
+                                 "kind = \"periodic\"\nsize = [5, 6, 7]\nwalls = [2]",
+                                 "kind = \"tube\"\nradius = 3\ninner_radius = 1.2\nheight = 7",
+                                 "kind = \"revolved\"\nprofile = [[1, 0], [1, 1], [3, 4], [3, 9]]",
+                                 "kind = \"extruded\"\nheight = 8\npolygon = [[0, 0], [5, 0], [5, 2.5], "
+                                 "[2.5, 2.5], [2.5, 5], [0, 5]]"};
   const std::string sizes[] = {"diameter = 1.0\n",
                                "diameter = { distribution = \"uniform\", min = 0.5, max = 1.1 }\n",
                                "diameter = { distribution = \"classes\", values = [1.2, 0.4], shares = [0.7, "
@@ -82,6 +90,38 @@ TEST(Beds, RestInAnyVessel) {
           EXPECT_EQ(testing::plain_objection(packing.spheres, packing.domain, 0), "") << scene;
           EXPECT_NE(packing.outcome, Outcome::hit_limit) << scene << packing.reason;
         }
+}
+
+/// Whose walls are round about an axis, stand upright about any outline, or are obstacles in a part: a pipe
+/// from wall to wall and a block that hangs free.
+TEST(Beds, OfShapesAndAroundObstaclesConvergeWithEverySphereAtRest) {
+  const testing::Folder folder;
+  const auto mesh = [&](const char* name, const Mesh& surface) {
+    return "\"" + folder.write(name, test::as_off(surface)).string() + "\"";
+  };
+  const Mesh pipe = test::translated(test::turned(test::prism_mesh(12, 1.3, 10), {1, 0, 0}), {-1, 4, 2.5});
+  const std::string vessels[] = {
+      "kind = \"revolved\"\nprofile = [[1.5, 0], [1.5, 2], [5, 7], [5, 18]]",
+      "kind = \"revolved\"\nprofile = [[2, 0], [6, 3], [1.5, 12], [1.5, 16]]",
+      "kind = \"cone\"\nradii = [2, 7]\nheight = 14",
+      "kind = \"tube\"\nradius = 5\ninner_radius = 2\nheight = 14",
+      "kind = \"extruded\"\nheight = 14\npolygon = [[0, 0], [9, 0], [9, 4], [4, 4], [4, 9], [0, 9]]\n"
+      "holes = [[[1.4, 1.4], [2.4, 1.4], [2.4, 2.4], [1.4, 2.4]]]",
+      "kind = \"mesh\"\nunit = \"mm\"\nfile = " + mesh("vessel.off", test::box_mesh({0, 0, 0}, {8, 8, 16})) +
+          "\nobstacles = [" + mesh("pipe.off", pipe) + ", " +
+          mesh("block.off", test::box_mesh({2.5, 2, 5}, {2, 3, 1.5})) + "]"};
+  for (const std::string& vessel : vessels)
+    for (const char* size :
+         {"diameter = 1.0\n", "diameter = { distribution = \"uniform\", min = 0.7, max = 1.2 }\n"})
+      for (const std::string& bed : {std::string("bed = \"poured\"\n"), stage("settle")}) {
+        const std::string scene =
+            "unit = \"mm\"\n[container]\n" + vessel + "\n[spheres]\ncount = 250\n" + size + bed;
+        const Packing packing = packed(scene);
+        EXPECT_EQ(packing.outcome, Outcome::converged) << scene << packing.reason;
+        EXPECT_EQ(packing.spheres.size(), 250u) << scene;
+        EXPECT_EQ(unsettled(packing), 0u) << scene;
+        EXPECT_EQ(testing::plain_objection(packing.spheres, packing.domain, 0), "") << scene;
+      }
 }
 
 TEST(Beds, SayTheirPorosityAndThatItIsNotWhatWasAsked) {

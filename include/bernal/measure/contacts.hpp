@@ -56,4 +56,19 @@ std::vector<Contacts> measure_contacts_across(double gap, double wall_gap, const
                                               const Domain&, std::span<const double> contact_gaps,
                                               const std::shared_ptr<const Container>& made = {});
 
+/// The contacts of some spheres, such as those in the core, with all spheres: walls do not lower their number
+/// as they do that of spheres at the wall.
+struct ContactsOfSome {
+  struct At {
+    double contact_gap, coordination;  ///< mean number of sphere-sphere contacts of each; 0 without spheres
+  };
+  std::uint64_t spheres = 0;
+  std::vector<At> by_gap;  ///< in the order of the gaps
+};
+
+/// Of the spheres that are `counted`; with `gap` as `measure_contacts_across`. Cost and errors: those of
+/// `measure_contacts`. Precondition: a mark for each sphere.
+ContactsOfSome contacts_of_some(const std::vector<bool>& counted, double gap, const Spheres<dynamic>&,
+                                const Domain&, std::span<const double> contact_gaps);
+
 }  // namespace bernal

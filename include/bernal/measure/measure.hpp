@@ -18,6 +18,7 @@
 #include "bernal/measure/radial_distribution.hpp"
 #include "bernal/measure/size_comparison.hpp"
 #include "bernal/measure/size_correlation.hpp"
+#include "bernal/measure/slab.hpp"
 #include "bernal/measure/structure_factor.hpp"
 #include "bernal/measure/wall_profile.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
@@ -37,12 +38,22 @@ struct Measurements {
   std::optional<double> held_from;
   /// Whether the number of rattlers at this gap is meaningful.
   bool holds(const Contacts& c) const { return held_from && c.contact_gap >= *held_from; }
+  /// Of the spheres in the core of `walls`, and of a bed also in its own: at the gaps of `by_gap`, and then
+  /// at that of `contacts`. Absent without a core.
+  std::optional<ContactsOfSome> core_contacts;
+
+  std::optional<Slab> slab;  ///< if one is asked for
   std::optional<RadialDistribution> radial;
   std::optional<SizeCorrelation> size_correlation;
   std::optional<Chambers> chambers;
-  std::optional<BedProfile> bed;  ///< if it has a level, walls and pores are measured below it
+  std::optional<BedProfile> bed;
+  /// Where walls, column, pores and g(r) between walls are measured: the slab, or the bed below its level.
+  std::optional<LowerPart> part() const {
+    if (slab) return slab->part;
+    return bed ? bed->below_level() : std::nullopt;
+  }
   std::optional<WallProfile> walls;
-  std::optional<ColumnProfile> column;  ///< up to the level of a bed, if it has one
+  std::optional<ColumnProfile> column;
   std::optional<BondOrder> order;
   std::optional<LocalPacking> local;
   std::optional<StructureFactor> structure;
@@ -58,7 +69,8 @@ struct MeasureOptions {
   RadialOptions radial = {};
   SizeCorrelationOptions size_correlation = {};
   ChamberOptions chambers = {};
-  BedOptions bed = {};  ///< its gaps are ignored
+  BedOptions bed = {};                 ///< its gaps are ignored
+  std::optional<LowerPart> slab = {};  ///< what is measured of walls, column, pores and g(r) between walls
   WallOptions walls = {};
   LocalPackingOptions local = {};
   StructureOptions structure = {};
@@ -81,7 +93,8 @@ struct AskedRadii {
   RadiusSequence sequence() const { return {drawn ? *drawn : *sizes, seed, draw, first}; }
 };
 
-/// Precondition: spheres of the domain's dimension. Cost: the sum of the parts.
+/// Precondition: spheres of the domain's dimension. Cost: the sum of the parts. Errors: those of
+/// `measure_contacts` and `measure_slab`.
 Measurements measure(const Spheres<dynamic>&, const Domain&, const AskedRadii& = {},
                      const MeasureOptions& = {});
 

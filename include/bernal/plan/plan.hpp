@@ -50,8 +50,7 @@ struct Plan {
   /// of its largest spheres for that, how many, and how many would do; where a CAD part may not be what is
   /// meant, why; a sentence, or empty.
   std::string caution;
-  /// What `explain` adds: how the scene is understood where it leaves that open, and the line that says
-  /// otherwise; sentences.
+  /// How the scene is understood where it leaves that open, and the line that says otherwise; sentences.
   std::vector<std::string> hints;
   bool places_expected = false;     ///< some stage ends with as many spheres as are expected to fit
   std::vector<PlanItem> items;      ///< what would run, in order
@@ -67,7 +66,7 @@ Plan build(const Scene& scene);
 /// stands, even where the packing is to decide how large it becomes and only its proportions matter to
 /// `build`; without a size it is the unit cube. Throws as `build`.
 Domain domain_of(const Scene& scene);
-/// The same, with what the importer did in `notes`, and in `caution` what may not be meant: see
+/// The same, with what the importer and obstacles did in `notes`, and in `caution` what may not be meant: see
 /// `MeshReport::cautions`; the scene then says itself what was left to the file.
 Domain domain_of(Scene& scene, std::string& notes, std::string& caution);
 

@@ -91,9 +91,15 @@ struct Packing {
   double volume = 0;                     ///< of the domain
   double expected_packing_fraction = 0;  ///< by the plan, before the run
   std::string caution = {};              ///< the plan's
+  std::vector<std::string> hints = {};   ///< the plan's
   /// Random close packing of the very sizes that are there, by the rod model, see `predict_packing_fraction`;
   /// nothing where that says nothing: between walls, in other than three dimensions.
   std::optional<double> expected_of_sizes = {};
+  /// In kg/m³, where the scene asks for one: what was asked, and what is there, of a bed up to its surface.
+  struct BulkDensity {
+    double asked = 0, reached = 0;
+  };
+  std::optional<BulkDensity> bulk_density = {};
   /// All sizes are so many times those that were drawn: in a container `polish` lets them grow until they
   /// jam.
   double size_scale = 1;

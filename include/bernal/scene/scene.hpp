@@ -43,7 +43,18 @@ struct PeriodicBox {
 struct SceneContainer
     : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon, Cone, Tube, Lathed, Extruded> {
   using variant::variant;
+  /// Of a Box of three dimensions or a Cylinder without periods: the radius of its rounded edges, at most
+  /// half of any edge. The walls are those of `rounded`, a mesh or a solid of revolution.
+  double rounding = 0;
+  /// Solids that are taken out of one of three dimensions without periods, none with obstacles of its own.
+  /// What then remains is a mesh, whose flat faces stand for round walls on the inner side of them, see
+  /// `flattened`. Those of a MeshFile that are files, in its unit, may stand in that instead.
+  std::vector<SceneContainer> obstacles = {};
   Locations locations;
+
+  /// Those of it and its obstacles that stand in files.
+  std::vector<MeshFile*> meshes();
+  std::vector<const MeshFile*> meshes() const;
 };
 
 /// Another program that finds the places which the first stage begins with: `scene.engine = Lammps{}`.

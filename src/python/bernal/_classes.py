@@ -76,7 +76,7 @@ def float_of(value: int) -> float:
 
 
 def names_files(key: dict[str, Any]) -> bool:
-    return key["type"] == "file" or key["name"] == "obstacles"
+    return key["type"] in ("file", "solids")
 
 
 def taken(key: dict[str, Any], value: Any) -> Any:

@@ -213,7 +213,8 @@ def _surfaces_of(container: Container) -> list[_surfaces.Surface]:
     """The surfaces from arrays among the container's files."""
     values = [value for name, value in container._said.items() if _classes.names_files(container._key(name))]
     files = [file for value in values for file in (value if isinstance(value, list) else [value])]
-    return [file for file in files if isinstance(file, _surfaces.Surface)]
+    obstacles = [surface for each in files if isinstance(each, Container) for surface in _surfaces_of(each)]
+    return [file for file in files if isinstance(file, _surfaces.Surface)] + obstacles
 
 
 def _with_what_is_given(whole: dict[str, Any], core: Any) -> dict[str, Any]:
@@ -221,9 +222,14 @@ def _with_what_is_given(whole: dict[str, Any], core: Any) -> dict[str, Any]:
     given = {name: _surfaces.Surface(*arrays) for name, arrays in core.surfaces().items()}
     container = whole["container"]
     if given:
-        container["file"] = given.get(container["file"], container["file"])
-    if given and "obstacles" in container:
-        container["obstacles"] = [given.get(each, each) for each in container["obstacles"]]
+        solids = [each for each in container.get("obstacles", []) if isinstance(each, dict)]
+        for solid in [container, *solids]:
+            if "file" in solid:
+                solid["file"] = given.get(solid["file"], solid["file"])
+        if "obstacles" in container:
+            container["obstacles"] = [
+                each if isinstance(each, dict) else given.get(each, each) for each in container["obstacles"]
+            ]
     start = core.start()
     if start is not None:
         from ._packing import Packing
@@ -280,7 +286,7 @@ def _chosen(selector: str, table: dict[str, Any]) -> Said:
 
 def _sizes(value: Any) -> Any:
     if isinstance(value, dict):
-        return _chosen("distribution", value)
+        return _chosen("kind" if "kind" in value else "distribution", value)
     if isinstance(value, list):
         return [_sizes(each) for each in value]
     return value

@@ -96,25 +96,29 @@ def verify(
     return certificate
 
 
-def measure(packing: Packing | PathLike, *, gap: float = 0.002, progress: Progress = None) -> Measurements:
+def measure(
+    packing: Packing | PathLike, *, gap: float = 0.002, slab: str | None = None, progress: Progress = None
+) -> Measurements:
     """Measures contacts, rattlers, g(r), chambers, porosity near walls, order, and sizes against those asked for, of a
     packing or of the files in a folder.
 
     Keys are those of `bernal measure --json`: n, dimension, unit, phi, coordination, rattlers, backbone, fabric, by_gap,
-    g_r (r, g and error of shape (bins,); between walls also share), size_correlation, crystalline, chambers, bed (height,
-    porosity and layers of a bed, and how many of its spheres do not rest), walls, column (along its axis, and from its
-    side, floor and lid), sizes, hash. Lists of numbers are arrays. Lengths are in the scene's unit. What does not apply
-    is None, such as walls in a periodic box.
+    core_contacts (of the spheres far from the walls), slab, g_r (r, g and error of shape (bins,); between walls also
+    share), size_correlation, crystalline, chambers, bed (height, porosity and layers of a bed, and how many of its
+    spheres do not rest), walls, column (along its axis, and from its side, floor and lid), sizes, hash. Lists of numbers
+    are arrays. Lengths are in the scene's unit. What does not apply is None, such as walls in a periodic box.
     Also `per_sphere`, arrays of shape (N,): coordination (contacts with other spheres), local_packing_fraction (the
     sphere's volume over that of its cell in the radical diagram), cell_volume, neighbours (faces of the cell), and in
     containers chamber (-1: in none).
 
     gap : spheres touch if the gap over the sum of their radii is below it.
+    slab : "z = 10..40", "x = -5 mm..5 mm", "z < 20": walls, column, pores and g(r) are those of this slab, and the key
+        slab has direction, from, to, phi and contacts of the spheres whose centres lie in it.
     """
     if not 0 <= (gap := _toml.number(gap, "gap")) <= 1:
         raise _errors.InputError("bad_argument", f"gap is a ratio from 0 to 1, not {gap}")
     of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
-    answer, per_sphere = finish(_core.measure(of._core, gap), progress)
+    answer, per_sphere = finish(_core.measure(of._core, gap, None if slab is None else str(slab)), progress)
     measured: Measurements = _records.record(Measurements, answer, arrays=True)
     measured["per_sphere"] = _records.Record(per_sphere)
     return measured
