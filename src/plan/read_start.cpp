@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -8,7 +7,6 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
-#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"

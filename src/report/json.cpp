@@ -3,8 +3,6 @@
 
 #include <sys/resource.h>
 
-#include <optional>
-
 #include "files/seal.hpp"
 #include "report/class_amounts.hpp"
 #include "report/measured_json.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

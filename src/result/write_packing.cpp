@@ -1,16 +1,12 @@
 #include "bernal/result/write_packing.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "bernal/core/error.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/section.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "core/parallel.hpp"
 #include "files/output_file.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
-#include <string>
 
 #include "bernal/core/error.hpp"
 #include "bernal/result/read_packing.hpp"

@@ -1,7 +1,6 @@
 #include "result/write_vtp.hpp"
 
 #include <bit>
-#include <cstdint>
 #include <cstring>
 
 #include <fmt/format.h>

@@ -113,7 +113,7 @@ struct Rule {
   bool has_length = true;
 };
 /// Lengths of which some may be 0.
-const Rule lengths_from_zero = {"an array of lengths of at least 0", all<is_amount>};
+const Rule lengths_not_negative = {"an array of lengths of at least 0", all<is_amount>};
 const std::map<Type, Rule> rules = {
     {Type::length,
      {"a positive length",
@@ -140,7 +140,7 @@ const std::map<Type, Rule> rules = {
 };
 
 const Rule& rule_of(const Key& key) {
-  return key.type == Type::lengths && key.range.min == 0 ? lengths_from_zero : rules.at(key.type);
+  return key.type == Type::lengths && key.range.min == 0 ? lengths_not_negative : rules.at(key.type);
 }
 
 }  // namespace

@@ -212,11 +212,11 @@ TEST(Rounding, ABallIsInARoundedBoxOnlyIfItReachesNowhereBeyondTheTrueOne) {
 }
 
 TEST(Rounding, ACylinderMayBecomeABall) {
-  const Cylinder cylinder{{1, 2, 3}, {0, 0, 2}, 2, 4};
-  const Revolved ball = rounded(cylinder, 2);
+  const Cylinder tin{{1, 2, 3}, {0, 0, 2}, 2, 4};
+  const Revolved ball = rounded(tin, 2);
   EXPECT_NO_THROW(require_profile(ball));
   EXPECT_NEAR(volume_of(ball), 4 * pi / 3 * 8, 1e-3 * 33);
-  const Revolved edges = rounded(cylinder, 0.5);
+  const Revolved edges = rounded(tin, 0.5);
   EXPECT_NO_THROW(require_profile(edges));
   EXPECT_EQ(bounds_of(edges).upper[2], 7);
   // Pappus: a corner of q² (1 - pi/4), turned about the axis at the distance of its centroid.

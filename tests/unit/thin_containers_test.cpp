@@ -85,6 +85,16 @@ TEST(ThinContainers, AreFilledWhereEverySphereTouchesBothEnds) {
   }
 }
 
+/// A sphere as thick as the tube has places whose distance from the axis is a double in four directions only.
+TEST(ThinContainers, ATubeAsThickAsItsSpheresHoldsSome) {
+  for (const char* axis : {"", "axis = [0.0, 2.0, 0.0]\nbase = [5.0, 0.0, -3.0]\n"}) {
+    const Packing packing = run(
+        plan_in(fmt::format("kind = \"tube\"\nradius = 2.5\ninner_radius = 1.5\nheight = 4.0\n{}", axis)));
+    EXPECT_GE(packing.spheres.size(), 4u) << packing.reason;
+    EXPECT_TRUE(certify(packing.spheres, packing.domain).certified) << packing.reason;
+  }
+}
+
 /// One sphere of the three that were expected.
 TEST(ThinContainers, AreNotFilledByFarFewerThanExpected) {
   const Packing packing = run(plan_in("kind = \"sphere\"\nradius = 1.0\n"));
