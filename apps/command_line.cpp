@@ -9,7 +9,6 @@
 #include <memory>
 #include <set>
 #include <sstream>
-#include <string_view>
 #include <system_error>
 #include <type_traits>
 

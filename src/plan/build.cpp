@@ -309,7 +309,7 @@ FillTask fill_task_of(const Plan& plan) {
 }
 
 /// As far as is known without expecting anything: what is to fit where.
-static Plan begun_plan(const Scene& stated) {
+static Plan begun_plan(const Scene& stated, const PlaceOfPlan* place = nullptr) {
   Plan plan;
   plan.scene = stated;
   complete(plan.scene);
@@ -317,12 +317,16 @@ static Plan begun_plan(const Scene& stated) {
   require_stage_that_places(scene);
   require_effect_of_accuracy(scene);
   plan.start = read_start(plan.scene);
-  plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
+  if (place)
+    plan.domain = place->domain, plan.container = place->container;
+  else
+    plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
   if (scene.engine) engine::require_engine_fits(scene, plan.domain);
   plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
   set_height_of_bed(plan);
   if (scene.asks_for_gaps()) require_gaps(plan);
-  if (is_faceted(plan.domain)) plan.container = container_of(plan);  // what fits into it is asked of it
+  if (is_faceted(plan.domain) && !plan.container)  // what fits into it is asked of it
+    plan.container = container_of(plan);
   return plan;
 }
 
@@ -345,7 +349,7 @@ static Plan finished(Plan plan) {
   return plan;
 }
 
-Plan made_plan(const Scene& stated) { return finished(begun_plan(stated)); }
+Plan made_plan(const Scene& stated, const PlaceOfPlan* place) { return finished(begun_plan(stated, place)); }
 
 std::optional<Plan> made_plan_where_all_fit(const Scene& stated) {
   Plan plan = begun_plan(stated);

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
 #include "plan/count_mass.hpp"
 #include "plan/estimate.hpp"

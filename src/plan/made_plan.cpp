@@ -8,6 +8,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "plan/plan_zones.hpp"
 
 namespace bernal {
 namespace {
@@ -47,7 +48,9 @@ Plan plan_of_largest(const Scene& stated) {
 Plan build(const Scene& scene) {
   const int dimension = scene.dimension();
   try {
-    Plan plan = scene.largest ? plan_of_largest(scene) : made_plan(scene);
+    Plan plan = !scene.zones.empty() ? plan_of_zones(scene)
+                : scene.largest      ? plan_of_largest(scene)
+                                     : made_plan(scene);
     plan.caution = in_dimension(dimension, plan.caution);
     for (PlanItem& item : plan.items) item.what = in_dimension(dimension, item.what);
     for (std::string& hint : plan.hints) hint = in_dimension(dimension, hint);

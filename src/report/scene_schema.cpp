@@ -73,6 +73,7 @@ SceneSchema basic_definitions() {
       {"direction", direction},
       {"push", push},
       {"position", array_of(refers_to("coordinate"), 3, 3)},
+      {"text", {{"type", "string"}, {"pattern", R"(^[^\u0000-\u001f,;"'<>&\\]+$)"}}},
       {"name", {{"anyOf", {file, SceneSchema{{"type", "integer"}}}}}},
       {"names", {{"anyOf", {refers_to("name"), array_of(refers_to("name"), 1)}}}},
       {"corner", array_of(refers_to("coordinate"), 2, 3)},
@@ -242,7 +243,7 @@ std::string scene_schema_as_json() {
         tables[table.name] = schema_of_table(table, "");
     }
   }
-  // Sizes are optional if a start is given.
+  // Sizes are optional if a start is given, or zones.
   SceneSchema& sizes = tables.at("spheres").at("allOf").back();
   sizes.at("anyOf").push_back(
       {{"required", {"start"}}, {"properties", {{"radius", false}, {"diameter", false}}}});
@@ -253,6 +254,8 @@ std::string scene_schema_as_json() {
   properties["container"] = refers_to("container");
   properties["container"]["description"] = "what the spheres lie in";
   properties.update(tables);
+  properties["zone"] = array_of(std::move(properties.at("zone")), 1);
+  properties["zone"]["description"] = "parts of the container with spheres of their own";
   properties["engine"] = refers_to("engine");
   properties["engine"]["description"] = "another program that finds the places the first stage begins with";
   properties["stage"] = array_of(refers_to("stage"), 1);
@@ -264,7 +267,8 @@ std::string scene_schema_as_json() {
                       {"description", "What is packed into what, and how."}};
   scene.erase("description");
   made.update(scene);
-  made["required"] = {"container", "spheres"};
+  made["required"] = {"container"};
+  made["anyOf"] = {SceneSchema{{"required", {"spheres"}}}, SceneSchema{{"required", {"zone"}}}};
   made["if"] = {{"properties", {{"container", {{"properties", {{"kind", {{"const", "mesh"}}}}}}}}}};
   made["then"] = {{"required", {"unit"}}};
   made["$defs"] = definitions;

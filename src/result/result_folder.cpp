@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "cad/read/files_of_part.hpp"
-#include "cad/read/known_formats.hpp"
 #include "files/bytes_of_file.hpp"
 #include "files/sha256.hpp"
 #include "report/report.hpp"

@@ -14,40 +14,16 @@
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/zones.hpp"
 
 namespace bernal {
 namespace {
 
+using schema::check;
 using schema::Entry;
 using schema::Key;
 using schema::Section;
 using schema::Type;
-
-/// Every value of the struct is one that a scene can say.
-void check(const Entry& entry, const void* options, const Section& section, bool in_bed = true) {
-  const auto absent = entry.left_out(options, section);
-  for (const Key& key : entry.keys) {
-    const auto value = key.of(options);
-    if (!key.acts_here(in_bed)) {
-      const auto otherwise = key.of(entry.defaults.get());
-      const bool said = value && !(otherwise && toml_text(*value) == toml_text(*otherwise));
-      if (said || section.locations.keys.contains(key.name))
-        section.fail(key.name,
-                     fmt::format("\"{}\" in {} acts in {} only; leave it out", key.name, section.name,
-                                 in_bed ? "periodic boxes" : "containers with walls"));
-      continue;
-    }
-    const auto& [whole, keys] = section.locations;
-    const bool missing = key.of(entry.defaults.get()) ? whole.line > 0 && !keys.contains(key.name) : !value;
-    if (missing && key.required && key.member.get && std::ranges::find(absent, key.name) == absent.end())
-      section.fail("", fmt::format("missing \"{}\" in {}: {}, {}", key.name, section.name,
-                                   schema::expectation(key), key.help));
-    if (value && !schema::accepts(key, *value))
-      section.refuse(key.name, fmt::format("must be {}, not {}", schema::expectation(key, value),
-                                           toml_text(*value).substr(0, 100)));
-  }
-  if (entry.rule) entry.rule(options, section);
-}
 
 void check_sizes(const SceneSizes& sizes, const std::string& name, const Scene& scene) {
   const Entry& entry = schema::entry_of(sizes);
@@ -368,10 +344,11 @@ void complete(Scene& scene) {
   take_porosity(scene);
   complete_list(scene);
   check_target(scene);
-  if (!is_start_alone(scene))
+  if (!is_start_alone(scene) && (scene.draws() || scene.zones.empty()))
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
                 scene);
   complete_stages(scene);
+  complete_zones(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});

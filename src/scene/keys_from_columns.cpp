@@ -31,6 +31,11 @@ std::vector<const Key*> points_from_columns(const std::filesystem::path& file, c
 
 }  // namespace
 
+bool comes_from_file(const schema::Entry& entry, const Key& key) {
+  return entry.columns.empty() ? key.type == Type::points
+                               : std::ranges::find(entry.columns, key.name) != entry.columns.end();
+}
+
 std::vector<const Key*> keys_from_columns(const std::filesystem::path& file, const schema::Entry& entry,
                                           Unit unit, void* options) {
   if (entry.columns.empty()) return points_from_columns(file, entry, unit, options);

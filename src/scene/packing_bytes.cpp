@@ -58,7 +58,7 @@ static void archive(Archive& a, Packing& packing);
 /// first two and completes the last.
 static void archive(Archive& a, Scene& scene) {
   std::string toml, file = scene.file.string();
-  bool has_sizes = scene.draws() || scene.start.file;
+  bool has_sizes = scene.draws() || scene.start.file || !scene.zones.empty();
   if (!a.reads()) {
     Scene said = scene;
     if (!has_sizes) said.sizes = Constant{1};
@@ -107,9 +107,9 @@ static void archive(Archive& a, Scene& scene) {
 }
 
 static void archive(Archive& a, Packing& p) {
-  a(p.spheres, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.hints, p.expected_of_sizes,
-    p.bulk_density, p.size_scale, p.scene, p.seed, p.threads, p.program, p.outcome, p.reason, p.effects,
-    p.history, p.seconds, p.resumed);
+  a(p.spheres, p.classes, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.hints,
+    p.expected_of_sizes, p.bulk_density, p.size_scale, p.scene, p.seed, p.threads, p.program, p.outcome,
+    p.reason, p.effects, p.history, p.seconds, p.resumed);
 }
 
 /// Which bernal wrote the bytes, and whether this one may read them, stands in front; of those before 0.2 it

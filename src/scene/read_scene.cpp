@@ -20,6 +20,7 @@
 #include "scene/stage_table.hpp"
 #include "scene/toml_file.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/zones.hpp"
 
 namespace bernal {
 namespace {
@@ -49,7 +50,8 @@ class Reader {
     read_own(root, schema::scene_entry(), "the scene", scene);
     unit_ = scene.unit;
     read_container(root, scene);
-    read_spheres(table_in(root, "spheres"), scene);
+    read_spheres(root, scene);
+    read_zones(root, scene);
     if (root.contains("accuracy"))
       read_own(table_in(root, "accuracy"), schema::accuracy_entry(), "[accuracy]", scene);
     read_engine(root, scene);
@@ -70,7 +72,7 @@ class Reader {
     check_names(root, schema::scene_entry(), {tables.begin(), tables.end()}, "the scene");
     for (const std::string_view name : tables)
       if (const toml::node* node = root.get(name);
-          node && name != "stage" && name != "output" && !node->is_table())
+          node && name != "stage" && name != "output" && name != "zone" && !node->is_table())
         fail(node->source(), "\"{0}\" must be a table [{0}], not {1}", name, written(*node));
   }
 
@@ -100,7 +102,7 @@ class Reader {
     const std::size_t kind = choose(table, "kind", kinds, where);
     const auto of_kind = std::ranges::find(entries, kinds[kind].name, &Entry::name);
     schema::hold(solid, static_cast<std::size_t>(of_kind - entries.begin()));
-    read(table, *of_kind, "kind", where, schema::options_of(solid), solid.locations);
+    read(table, *of_kind, {"kind"}, where, schema::options_of(solid), solid.locations);
     if (auto* mesh = std::get_if<MeshFile>(&solid))
       mesh->file = beside(solid.locations.of("file"), mesh->file);
     if (const toml::node* rounding = table.get("rounding"))
@@ -142,13 +144,17 @@ class Reader {
     SceneEngine& engine = scene.engine.emplace();
     schema::hold(engine, choose(table, "kind", known_words_in(schema::engine_entries()), "[engine]"));
     engine.locations.keys["kind"] = at(table.find("kind")->first.source());
-    read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
+    read(table, schema::entry_of(engine), {"kind"}, "[engine]", schema::options_of(engine), engine.locations);
   }
 
-  void read_spheres(const toml::table& table, Scene& scene) {
+  /// Zones need no others beside theirs.
+  void read_spheres(const toml::table& root, Scene& scene) {
+    const bool has_zones = root.contains("zone");
+    if (has_zones && !root.contains("spheres")) return;
+    const toml::table& table = table_in(root, "spheres");
     sizes_are_diameters_ = table.contains("diameter");
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
-    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start"))
+    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start") && !has_zones)
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
     scene.target.where = at(table.source());
@@ -157,39 +163,50 @@ class Reader {
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
   }
 
-  /// All tables [[name]]; null where there are none.
-  const toml::array* tables_in(const toml::table& root, std::string_view name) const {
+  void read_zones(const toml::table& root, Scene& scene) {
+    for (const toml::table* table : tables_in(root, "zone")) {
+      Zone& zone = scene.zones.emplace_back();
+      Scene& spheres = zone.spheres;
+      const std::string where = section_name_of_zone(scene.zones.size());
+      sizes_are_diameters_ = table->contains("diameter");
+      read(*table, schema::zone_entry(), names_of(schema::spheres_of_zone_entry().keys), where, &zone,
+           zone.locations);
+      spheres.file = path_;
+      read(*table, schema::spheres_of_zone_entry(), names_of(schema::zone_entry().keys), where, &spheres,
+           spheres.locations);
+      spheres.target.where = spheres.locations.whole;
+    }
+  }
+
+  /// All tables [[name]].
+  std::vector<const toml::table*> tables_in(const toml::table& root, std::string_view name) const {
+    std::vector<const toml::table*> all;
     const toml::node* node = root.get(name);
-    if (!node) return nullptr;
-    const toml::array* all = node->as_array();
-    if (!all || all->empty() || !all->is_array_of_tables())
+    if (!node) return all;
+    if (const toml::array* array = node->as_array(); !array || array->empty() || !array->is_array_of_tables())
       fail(node->source(), "\"{0}\" must be one table [[{0}]] {1} {0}, not {2}", name,
            name == "output" ? "an" : "a", written(*node));
+    for (const toml::node& item : *node->as_array()) all.push_back(item.as_table());
     return all;
   }
 
   void read_stages(const toml::table& root, Scene& scene) const {
-    const toml::array* stages = tables_in(root, "stage");
-    if (!stages) return;
-    for (const toml::node& item : *stages) {
-      const toml::table& table = *item.as_table();
+    for (const toml::table* table : tables_in(root, "stage")) {
       const StageTable& stage =
-          *stage_tables()[choose(table, "do", known_words_in(stage_tables()), "[[stage]]")];
+          *stage_tables()[choose(*table, "do", known_words_in(stage_tables()), "[[stage]]")];
       Stage& made = scene.stages.emplace_back(stage.make());
-      read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
+      read(*table, stage.keys, {"do"}, fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
            made.locations);
     }
   }
 
   void read_outputs(const toml::table& root, Scene& scene) const {
-    const toml::array* outputs = tables_in(root, "output");
-    if (!outputs) return;
-    for (const toml::node& item : *outputs) {
-      const toml::table& table = *item.as_table();
+    for (const toml::table* table : tables_in(root, "output")) {
       const OutputTable& format =
-          *output_tables()[choose(table, "format", known_words_in(output_tables()), "[[output]]")];
+          *output_tables()[choose(*table, "format", known_words_in(output_tables()), "[[output]]")];
       Output& made = scene.outputs.emplace_back(Output{.format = std::string(format.name())});
-      read(table, format.keys, "format", fmt::format("[[output]] {}", format.name()), &made, made.locations);
+      read(*table, format.keys, {"format"}, fmt::format("[[output]] {}", format.name()), &made,
+           made.locations);
     }
   }
 
@@ -265,12 +282,12 @@ class Reader {
          written(node));
   }
 
-  /// All keys of an entry that the table has; what is missing, `complete` finds. Refuses unknown ones, except
-  /// at the top of the file, where the tables stand between the keys: there `check_names` does.
-  void read(const toml::table& table, const Entry& entry, std::string_view selector, const std::string& where,
+  /// All keys of an entry that the table has, besides `others`; what is missing, `complete` finds. Refuses
+  /// unknown ones, except at the top of the file, where the tables stand between the keys: there
+  /// `check_names` does.
+  void read(const toml::table& table, const Entry& entry, const Names& others, const std::string& where,
             void* options, Locations& locations) const {
-    if (&entry != &schema::scene_entry())
-      check_names(table, entry, selector.empty() ? Names{} : Names{selector}, where);
+    if (&entry != &schema::scene_entry()) check_names(table, entry, others, where);
     if (locations.whole.file.empty()) locations.whole = at(table.source());
     for (const Key& key : entry.keys) {
       const auto found = table.find(key.name);
@@ -287,11 +304,6 @@ class Reader {
                other.name, key.name, where);
       take_columns(found->second, entry, where, options, locations);
     }
-  }
-
-  static bool comes_from_file(const Entry& entry, const Key& key) {
-    return entry.columns.empty() ? key.type == Type::points
-                                 : std::ranges::find(entry.columns, key.name) != entry.columns.end();
   }
 
   /// Puts what stands in the file in its place, so that the scene is whole without the file.
@@ -316,7 +328,7 @@ class Reader {
       const auto& entries = schema::size_entries();
       const std::size_t n = choose(*table, "distribution", known_words_in(entries), named);
       schema::hold(sizes, n);
-      read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
+      read(*table, entries[n], {"distribution"}, named, schema::options_of(sizes), sizes.locations);
       return sizes;
     }
     if (const auto* word = node.as_string();
@@ -354,7 +366,7 @@ class Reader {
     throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
   }
 
-  static constexpr std::array<std::string_view, 6> tables = {"container", "spheres", "accuracy",
+  static constexpr std::array<std::string_view, 7> tables = {"container", "spheres", "zone",  "accuracy",
                                                              "engine",    "stage",   "output"};
 
   std::filesystem::path path_;

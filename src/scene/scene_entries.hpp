@@ -16,6 +16,10 @@ const Entry& spheres_entry();
 const Entry& accuracy_entry();
 const std::array<const Entry*, 3>& own_entries();
 
+/// Of a Zone: where it lies; and what else it may say, of its `spheres`.
+const Entry& zone_entry();
+const Entry& spheres_of_zone_entry();
+
 /// In the order of the alternatives of SceneContainer, SceneSizes and SceneEngine.
 const std::vector<Entry>& container_entries();
 const std::vector<Entry>& size_entries();

@@ -1,5 +1,3 @@
-#include <functional>
-
 #include <fmt/format.h>
 
 #include "scene/scene_entries.hpp"

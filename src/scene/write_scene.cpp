@@ -147,6 +147,9 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
   std::string out = fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
                                 container_as_toml(named.container), lines(schema::spheres_entry(), &named),
                                 lines(schema::accuracy_entry(), &scene));
+  for (const Zone& zone : named.zones)
+    out += fmt::format("\n[[zone]]\n{}{}", lines(schema::zone_entry(), &zone),
+                       lines(schema::spheres_of_zone_entry(), &zone.spheres));
   if (scene.engine) out += engine_as_toml(*scene.engine);
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
   for (const Output& output : scene.outputs) {

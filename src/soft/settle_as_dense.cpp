@@ -6,9 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "settle/roll_to_rest.hpp"
 #include "soft/bed_density.hpp"
-#include "soft/tap.hpp"
 
 namespace bernal {
 namespace {

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "check.hpp"
 
 // What the command tells of a bed: its height, its porosity, and which spheres do not rest.

@@ -85,6 +85,8 @@ struct CheckpointOptions {
 /// the domain.
 struct Packing {
   Spheres<dynamic> spheres;  ///< centres in one period, see `wrap`
+  /// Of each sphere, its place in `classes_of(scene)`; empty where the scene tells no spheres apart.
+  std::vector<std::uint32_t> classes = {};
   Domain domain;
   /// Of the domain, see `Plan::container`, so that measuring need not make it again; may be null.
   std::shared_ptr<const Container> container = {};
@@ -117,8 +119,9 @@ struct Packing {
   double packing_fraction() const;
 };
 
-/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`; nothing
-/// where that is not said, and in other than three dimensions.
+/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`, or where
+/// the scene has zones by those of its classes; nothing where these are not said, and in other than three
+/// dimensions.
 std::optional<double> mass_of(const Packing&, double packing_fraction);
 
 }  // namespace bernal

@@ -27,6 +27,7 @@
 namespace bernal {
 
 struct Packing;
+struct Zone;
 
 /// A box that repeats itself along every axis but those with walls. By `size` or `edge`; with neither, the
 /// packing decides how large it is.
@@ -174,7 +175,10 @@ struct Scene {
   /// of the volume; else random.
   std::optional<Draw> draw = {};
   Target target;
+  std::string material = {};                    ///< what the spheres are made of, by name; may be empty
   std::optional<double> material_density = {};  ///< of the spheres, in kg/m³
+  std::vector<Zone>
+      zones;  ///< parts of the container with spheres of their own; without = {}, as Mixture::of
   Start start = {};
   std::optional<SceneEngine> engine = {};
   double gap = 0;       ///< least distance between the surfaces of two spheres, or of one and its own image
@@ -186,7 +190,7 @@ struct Scene {
   std::vector<Output> outputs = {};
   Locations locations;  ///< of what stands in no container, sizes, stage or output
 
-  /// Whether there are sizes to draw from.
+  /// Whether there are sizes to draw from, besides those of zones.
   bool draws() const {
     const auto* constant = std::get_if<Constant>(&sizes);
     return !constant || constant->value != 0;
@@ -198,6 +202,22 @@ struct Scene {
     if (const auto* box = std::get_if<Box>(&container)) return box->dimension();
     return std::holds_alternative<Polygon>(container) ? 2 : 3;
   }
+};
+
+/// A part of the container with sizes, an amount and a material of its own, which nothing mixes with what is
+/// around it. What no zone takes up is for the sizes of the scene, if it has any. Where spheres settle, zones
+/// lie one upon the other: the spheres of each are poured onto those below, up to the level where it ends.
+/// Elsewhere each is packed by itself, between the planes of its place as between walls.
+struct Zone {
+  std::string name = {};  ///< else that of its material, else "zone 2" of the second
+  /// Planes, "z < 20" or "x > 5": the zone lies on that side of each. Of a zone that settles none: it lies on
+  /// the zones that come before it.
+  std::vector<std::string> place = {};
+  std::vector<std::string> solids = {};  ///< of the container's file, by name or by number from 1
+  std::optional<int> chamber = {};       ///< of a mesh of several closed spaces: the first is the largest
+  /// The sizes, the amount, the material: what [spheres] may say, but for gaps, a start and beds.
+  Scene spheres;
+  Locations locations = {};
 };
 
 /// As scenes have them: "double", "filtered", "exact"; "random", "quantiles".

@@ -9,7 +9,6 @@
 
 #include "bernal/core/tolerance.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "core/parallel.hpp"
 #include "domain/exact_analytic.hpp"
 #include "domain/exact_way.hpp"
 #include "domain/free_path.hpp"
