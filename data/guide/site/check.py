@@ -63,7 +63,8 @@ def tidied(folder):
     def complaints(page):
         said = subprocess.run(["tidy", "-quiet", "-errors", "--show-warnings", "yes", "--drop-empty-elements", "no",
                                "--warn-proprietary-attributes", "no", page], capture_output=True, text=True).stderr
-        return [f"{page}: {line}" for line in said.splitlines()]
+        return [f"{page}: {line}" for line in said.splitlines()
+                if '<ol> attribute "type" not allowed' not in line]  # it is, whatever tidy 5.8 says
 
     with ThreadPoolExecutor() as pool:
         return sum(pool.map(complaints, pages_of(folder)), [])
