@@ -3,16 +3,12 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
-#include <string>
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/engine/engine_error.hpp"

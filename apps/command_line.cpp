@@ -9,7 +9,6 @@
 #include <memory>
 #include <set>
 #include <sstream>
-#include <string_view>
 #include <system_error>
 #include <type_traits>
 
@@ -186,6 +185,7 @@ Option list_of(int count, Option option) {
   return demanding(std::move(option),
                    [=](CLI::App&, CLI::Option& it) { it.delimiter(',')->expected(count); });
 }
+Option measured(Option option) { return checked(std::move(option), complaint_of_number); }
 Option repeated(Option option) {
   option.repeated = true;
   return demanding(std::move(option), [](CLI::App&, CLI::Option& it) {

@@ -58,6 +58,8 @@ Option one_of(Option, const std::vector<std::string>& words);
 Option checked(Option, const std::function<std::string(const std::string& word)>& complaint);
 /// Takes `count` values with commas between them.
 Option list_of(int count, Option);
+/// Takes text that is a number or a number with its unit; refuses those that are not finite or too large.
+Option measured(Option);
 /// May be given again, one value each time.
 Option repeated(Option);
 /// Refuses it without the other option, which stands before it in the list.

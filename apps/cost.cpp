@@ -1,10 +1,7 @@
 #include "bernal/cost/cost.hpp"
 
-#include <filesystem>
 #include <memory>
-#include <string>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "bernal/core/text.hpp"

@@ -1,11 +1,8 @@
 #include "bernal/formats/export.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <map>
 #include <memory>
 #include <set>
-#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,9 +1,5 @@
 #include <cstdint>
-#include <filesystem>
 #include <memory>
-#include <vector>
-
-#include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
 #include "bernal/map/map.hpp"

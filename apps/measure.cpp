@@ -1,9 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,7 +12,6 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/json.hpp"
-#include "bernal/report/section.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_contacts.hpp"
 #include "bernal/result/write_local.hpp"

@@ -1,5 +1,7 @@
 #include "mesh_flags.hpp"
 
+#include <charconv>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -7,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "bernal/core/text.hpp"
+#include "bernal/core/quantity.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/scene/read_scene.hpp"
 
@@ -20,17 +22,37 @@ Unit unit_of(const std::filesystem::path& file, const MeshFlags& flags) {
   return flags.file_unit.empty() ? unit_of_mesh_file(file) : unit_named(flags.file_unit);
 }
 
+/// What follows an option: a number, in `unit` where it is a length, or one with its unit.
+double number_of(std::string_view option, const std::string& text, Quantity of, Unit unit) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end == text.data() + text.size()) return number;
+  std::string complaint;
+  const std::optional<double> value = number_with_unit(text, of, unit, complaint);
+  if (!value)
+    throw Error(ErrorCode::bad_argument, fmt::format("{} must be a number, or one with its unit, not {}: {}",
+                                                     option, text, complaint));
+  return *value;
+}
+
+SceneSizes sizes_of(const MeshFlags& flags, Unit unit) {
+  if (flags.largest && flags.lognormal.empty()) return Constant{1};
+  if (!flags.radius.empty()) return Constant{number_of("--radius", flags.radius, Quantity::length, unit)};
+  if (!flags.diameter.empty())
+    return Constant{number_of("--diameter", flags.diameter, Quantity::diameter, unit)};
+  return Lognormal{.median = number_of("--lognormal", flags.lognormal.at(0), Quantity::diameter, unit),
+                   .sigma = number_of("--lognormal", flags.lognormal.at(1), Quantity::spread, unit)};
+}
+
 Scene scene_of_mesh(const std::filesystem::path& file, const MeshFlags& flags) {
   Scene scene;
   scene.unit = unit_of(file, flags);
-  MeshFile mesh{.file = file, .cap = flags.cap};
+  MeshFile mesh{.file = file};
+  for (const std::string& plane : flags.cap) mesh.cap.push_back(without_unit(plane, scene.unit));
   if (!flags.file_unit.empty()) mesh.unit = unit_named(flags.file_unit);
   scene.container = std::move(mesh);
-  scene.sizes_are_diameters = !flags.radius;
-  if (flags.lognormal.empty())
-    scene.sizes = Constant{flags.radius ? *flags.radius : flags.diameter.value_or(1)};
-  else
-    scene.sizes = Lognormal{.median = flags.lognormal.at(0), .sigma = flags.lognormal.at(1)};
+  scene.sizes_are_diameters = flags.radius.empty();
+  scene.sizes = sizes_of(flags, scene.unit);
   if (flags.count > 0) scene.target.count = flags.count;
   scene.target.fill = flags.fill;
   scene.largest = flags.largest;
@@ -44,8 +66,8 @@ std::string MeshFlags::given() const {
   std::vector<std::string_view> names;
   const std::pair<bool, std::string_view> all[] = {{!unit.empty(), "--unit"},
                                                    {!file_unit.empty(), "--file-unit"},
-                                                   {diameter.has_value(), "--diameter"},
-                                                   {radius.has_value(), "--radius"},
+                                                   {!diameter.empty(), "--diameter"},
+                                                   {!radius.empty(), "--radius"},
                                                    {!lognormal.empty(), "--lognormal"},
                                                    {count > 0, "--count"},
                                                    {fill, "--fill"},
@@ -64,11 +86,12 @@ std::vector<Option> options_of(MeshFlags& flags) {
                   "UNIT"}),
       with_units({"--file-unit", &flags.file_unit,
                   "Of the mesh alone, where it is not the unit of the other lengths", "UNIT"}),
-      {"--diameter", &flags.diameter, "Of every sphere in a mesh", "D"},
-      excludes({"--radius", &flags.radius, "Of every sphere in a mesh, instead of --diameter", "R"},
+      measured({"--diameter", &flags.diameter,
+                "Of every sphere in a mesh, with its own unit or without: 2 or \"2 mm\"", "D"}),
+      excludes(measured({"--radius", &flags.radius, "Of every sphere in a mesh, instead of --diameter", "R"}),
                "--diameter"),
-      excludes(excludes(list_of(2, {"--lognormal", &flags.lognormal, "Lognormal diameters in a mesh",
-                                    "MEDIAN,SIGMA"}),
+      excludes(excludes(list_of(2, measured({"--lognormal", &flags.lognormal, "Lognormal diameters in a mesh",
+                                             "MEDIAN,SIGMA"})),
                         "--diameter"),
                "--radius"),
       within({"--count", &flags.count, "Spheres in a mesh; as many as are expected to fit if absent", "N"}, 1,
@@ -80,8 +103,8 @@ std::vector<Option> options_of(MeshFlags& flags) {
                      "--radius"),
             "--count"),
       repeated({"--cap", &flags.cap,
-                "A plane that closes an open mesh, such as \"z = 1.1\", in the unit of all lengths; again "
-                "for another",
+                "A plane that closes an open mesh, such as \"z = 1.1\", in the unit of all lengths, or "
+                "\"z = 40 mm\"; again for another",
                 "PLANE"})};
 }
 

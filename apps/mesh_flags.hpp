@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,13 +10,13 @@
 /// What is packed into a mesh, where the command line says it and no scene does.
 struct MeshFlags {
   std::string unit, file_unit;
-  std::optional<double> diameter, radius;
-  std::vector<double> lognormal;  ///< median and sigma of the diameter
-  std::int64_t count = 0;         ///< 0: as many as are expected to fit
+  std::string diameter, radius;        ///< as all lengths in `unit`, or with one of their own: "3 mm"
+  std::vector<std::string> lognormal;  ///< median and sigma of the diameter
+  std::int64_t count = 0;              ///< 0: as many as are expected to fit
   bool fill = false, largest = false;
   std::vector<std::string> cap;
 
-  bool has_sizes() const { return diameter || radius || !lognormal.empty() || largest; }
+  bool has_sizes() const { return !diameter.empty() || !radius.empty() || !lognormal.empty() || largest; }
   /// Those that are given, for messages: "--diameter and --count".
   std::string given() const;
 };

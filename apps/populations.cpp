@@ -32,7 +32,7 @@ void require_few(std::size_t populations) {
 }
 
 /// The words between separators; between two adjacent ones stands an empty word.
-std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+std::vector<std::string_view> words_in(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> words;
   for (;;) {
     const std::size_t end = text.find_first_of(separators);
@@ -85,7 +85,7 @@ std::vector<double> numbers_of(const std::vector<std::string_view>& words, const
 }  // namespace
 
 Population parse_lognormal(const std::string& text, const std::string& where) {
-  const std::vector<std::string_view> words = split(text, ",");
+  const std::vector<std::string_view> words = words_in(text, ",");
   if (words.size() != 1 && words.size() != 3)
     refuse(where, fmt::format("\"{}\" is neither SIGMA nor D43,D32,VOLUME", text));
   const std::vector<double> n = numbers_of(words, where);
@@ -93,7 +93,7 @@ Population parse_lognormal(const std::string& text, const std::string& where) {
 }
 
 Population parse_lognormal_means(const std::string& text, const std::string& where) {
-  const std::vector<std::string_view> words = split(text, ",");
+  const std::vector<std::string_view> words = words_in(text, ",");
   if (words.size() != 2) refuse(where, fmt::format("\"{}\" is not D43,D32", text.substr(0, 40)));
   const std::vector<double> n = numbers_of(words, where);
   return of_means(n[0], n[1], 1, where);
@@ -101,7 +101,7 @@ Population parse_lognormal_means(const std::string& text, const std::string& whe
 
 std::vector<Population> parse_diameters(const std::string& text, const std::string& where) {
   std::vector<Population> populations;
-  for (const std::string_view word : split(text, ",")) {
+  for (const std::string_view word : words_in(text, ",")) {
     populations.push_back(checked({number_of(word, where), 0, 1}, where));
     require_few(populations.size());
   }
@@ -110,8 +110,8 @@ std::vector<Population> parse_diameters(const std::string& text, const std::stri
 
 std::vector<Population> parse_classes(const std::string& text, const std::string& where) {
   std::vector<Population> populations;
-  for (const std::string_view item : split(text, ",")) {
-    const std::vector<std::string_view> words = split(item, ":");
+  for (const std::string_view item : words_in(text, ",")) {
+    const std::vector<std::string_view> words = words_in(item, ":");
     if (words.size() != 2) refuse(where, fmt::format("\"{}\" is not DIAMETER:VOLUME", item.substr(0, 40)));
     populations.push_back(checked({number_of(words[0], where), 0, number_of(words[1], where)}, where));
     require_few(populations.size());
@@ -132,9 +132,9 @@ std::vector<Population> read_populations(std::istream& in, char format) {
                                            : "d43 sigma volume";
   std::vector<Population> populations;
   std::size_t line_number = 0;
-  for (const std::string_view line : split(text, "\n")) {
+  for (const std::string_view line : words_in(text, "\n")) {
     const std::string where = fmt::format("standard input, line {}", ++line_number);
-    std::vector<std::string_view> words = split(line.substr(0, line.find('#')), " \t\r,;");
+    std::vector<std::string_view> words = words_in(line.substr(0, line.find('#')), " \t\r,;");
     std::erase(words, "");
     const std::vector<double> n = numbers_of(words, where);
     if (n.empty()) continue;

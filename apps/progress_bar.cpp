@@ -68,7 +68,10 @@ std::string bar(double fraction) {
 bool interrupted() { return signalled; }
 
 ProgressBar::ProgressBar(bool quiet, bool silent)
-    : quiet_(quiet), silent_(silent), terminal_(isatty(STDERR_FILENO) == 1), next_(silence) {
+    : quiet_(quiet),
+      silent_(silent),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      next_(terminal_ ? silence : between_lines) {
   if (!quiet) ticker_ = std::thread([this] { tick(); });
 }
 

@@ -5,13 +5,9 @@
 #include <atomic>
 #include <charconv>
 #include <csignal>
-#include <filesystem>
 #include <map>
-#include <memory>
 #include <ranges>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

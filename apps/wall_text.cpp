@@ -1,7 +1,6 @@
 #include "wall_text.hpp"
 
 #include <algorithm>
-#include <string>
 #include <vector>
 
 #include <fmt/format.h>

@@ -36,12 +36,12 @@ if(BERNAL_SANITIZE)
 endif()
 
 # Where CMAKE_UNITY_BUILD is on, the files of a folder are compiled many together: what the same headers and templates
-# cost is paid once for all of them. Where eight take 2 GB, there are no more. Names in a folder are different anyway.
+# cost is paid once for all of them. Where eighteen take 2 GB, there are no more. Names in a folder are different anyway.
 # Kernels stay alone: what they tell the compiler about instruction sets is theirs.
 function(bernal_compile_together folder)
-  set(most 16)
+  set(most 40)
   if(folder MATCHES "^(cad|soft)")
-    set(most 8)
+    set(most 18)
   endif()
   string(REPLACE / _ group_name ${folder})
   set(sources ${ARGN})

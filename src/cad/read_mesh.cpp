@@ -185,10 +185,6 @@ Mesh read_obstacle(const std::filesystem::path& file, const MeshFile& options, c
   }
 }
 
-[[noreturn]] void refuse_obstacle(const std::filesystem::path& file, std::string_view why) {
-  throw OptionError("obstacles", fmt::format("{} {}", file.string(), why));
-}
-
 /// Subtracts the obstacles from the container; returns their meshes.
 std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const ImportFor& purpose,
                                      std::vector<std::string>& done) {
@@ -199,22 +195,12 @@ std::vector<Mesh> take_out_obstacles(Mesh& mesh, const MeshFile& options, const 
   mesh = std::move(container.mesh);                               // turned outward
   std::vector<std::filesystem::path> seen;
   for (const std::filesystem::path& file : options.obstacles) {
-    if (std::ranges::find(seen, file) != seen.end()) refuse_obstacle(file, "is listed twice");
+    if (std::ranges::find(seen, file) != seen.end())
+      throw OptionError("obstacles", fmt::format("{} is listed twice", file.string()));
     seen.push_back(file);
     const Mesh& obstacle = taken_out.emplace_back(read_obstacle(file, options, purpose));
-    switch (cad::take_out(mesh, obstacle)) {
-      case cad::TakenOut::outside:
-        refuse_obstacle(
-            file, "lies outside of the container, or in an obstacle before it; check its unit and place");
-      case cad::TakenOut::whole:
-        refuse_obstacle(file, "leaves nothing of the container; check its unit and place");
-      case cad::TakenOut::entangled:
-        refuse_obstacle(
-            file, "meets the wall in a way that cannot be cut out; move it a little, or take it out in CAD");
-      case cad::TakenOut::done:
-        done.push_back(
-            fmt::format("took out {}, {} faces", file.filename().string(), obstacle.triangles.size()));
-    }
+    cad::take_out(mesh, obstacle, file.string());
+    done.push_back(fmt::format("took out {}, {} faces", file.filename().string(), obstacle.triangles.size()));
   }
   return taken_out;
 }

@@ -100,8 +100,9 @@ class Archive {
       take_parts(value);
   }
 
+  // Cold, so that the hundred states that are kept hold calls of these, and not their code.
   template <class T>
-  void take_bytes(T& value) {
+  [[gnu::cold, gnu::noinline]] void take_bytes(T& value) {
     note_size(sizeof value);
     bytes(static_cast<void*>(&value), sizeof value);
   }
@@ -119,7 +120,7 @@ class Archive {
   }
 
   template <class T, class Allocator>
-  void take_parts(std::vector<T, Allocator>& values) {
+  [[gnu::cold, gnu::noinline]] void take_parts(std::vector<T, Allocator>& values) {
     constexpr bool own = requires(T & value) { value.archive(*this); }
     || requires(T & value) { archive(*this, value); };
     constexpr bool plain = is_archived_as_bytes<T> && !own;
@@ -132,12 +133,12 @@ class Archive {
       for (T& value : values) take(value);
     }
   }
-  void take_parts(std::vector<bool>& values) {
+  [[gnu::cold, gnu::noinline]] void take_parts(std::vector<bool>& values) {
     std::vector<char> plain(values.begin(), values.end());
     take_parts(plain);
     if (reads()) values.assign(plain.begin(), plain.end());
   }
-  void take_parts(std::string& text) {
+  [[gnu::cold, gnu::noinline]] void take_parts(std::string& text) {
     note_size(1);
     const std::size_t n = length(text.size(), 1);
     if (reads()) text.resize(n);
@@ -148,7 +149,7 @@ class Archive {
     for (T& value : values) take(value);
   }
   template <class T>
-  void take_parts(std::optional<T>& value) {
+  [[gnu::cold, gnu::noinline]] void take_parts(std::optional<T>& value) {
     bool there = value.has_value();
     take(there);
     if (reads()) value.reset();
@@ -156,11 +157,11 @@ class Archive {
     if (there) take(*value);
   }
   template <int D>
-  void take_parts(Spheres<D>& spheres) {
+  [[gnu::cold, gnu::noinline]] void take_parts(Spheres<D>& spheres) {
     (*this)(spheres.x, spheres.r);
   }
   template <class Derived>
-  void take_parts(Eigen::PlainObjectBase<Derived>& values) {
+  [[gnu::cold, gnu::noinline]] void take_parts(Eigen::PlainObjectBase<Derived>& values) {
     std::int64_t rows = values.rows(), columns = values.cols();
     (*this)(rows, columns);
     if (reads()) {

@@ -201,4 +201,13 @@ std::optional<double> number_with_unit(std::string_view text, Quantity of, Unit 
   return {};
 }
 
+std::string without_unit(const std::string& condition, Unit unit) {
+  const std::size_t sign = condition.find_last_of("=<>");
+  if (sign == std::string::npos) return condition;
+  std::string complaint;
+  const auto value =
+      number_with_unit(std::string_view(condition).substr(sign + 1), Quantity::length, unit, complaint);
+  return value ? fmt::format("{} {}", condition.substr(0, sign + 1), *value) : condition;
+}
+
 }  // namespace bernal

@@ -1,7 +1,6 @@
 #include "bernal/core/text.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <numeric>
 #include <utility>
 #include <vector>

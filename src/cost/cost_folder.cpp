@@ -1,7 +1,5 @@
 #include "cost/cost_folder.hpp"
 
-#include <algorithm>
-
 #include "bernal/core/error.hpp"
 #include "files/input_file.hpp"
 #include "files/output_file.hpp"

@@ -202,13 +202,9 @@ Subject subject_of(const Scene& scene) {
                   .box_follows = plan.box_follows};
   subject.is_predicted = subject.scene.target.predicted;
   subject.scene.target.predicted = false;  // but the number that it stands for
-  if (auto* mesh = std::get_if<MeshFile>(&subject.scene.container)) {
-    const auto make_absolute = [&](std::filesystem::path& file) {
-      if (!mesh->surface_called(file)) file = std::filesystem::absolute(file).lexically_normal();
-    };
-    make_absolute(mesh->file);
-    std::ranges::for_each(mesh->obstacles, make_absolute);
-  }
+  for (MeshFile* mesh : subject.scene.container.meshes())
+    for (std::filesystem::path* file : mesh->files())
+      if (!mesh->surface_called(*file)) *file = std::filesystem::absolute(*file).lexically_normal();
   return subject;
 }
 

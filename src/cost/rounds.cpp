@@ -1,8 +1,6 @@
 #include "cost/rounds.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <memory>
 #include <numeric>
 #include <random>
 #include <thread>

@@ -93,11 +93,13 @@ class RevolvedContainer final : public Container {
   bool clears_all_exactly(const Vector<3>& c, double r, double error) const {
     const ExactVector center = exact(c);
     const Vector<2> place = in_half_plane(c, shape_.base, axis_);
-    bool clear = true;
+    bool clear = true, on_wall = false;
     walls_.for_each_within(place, r + error, [&](const Segment& s) {
-      if (clear && s.offset(place).norm() <= r + error) clear = clears_exactly(edges_[s.id], center, r);
+      if (!clear || s.offset(place).norm() > r + error) return;
+      clear = clears_exactly(edges_[s.id], center, r);
+      if (r == 0) on_wall |= !clears_exactly(edges_[s.id], center, std::numeric_limits<double>::denorm_min());
     });
-    if (!clear) return false;
+    if (!clear || on_wall) return clear;
     bool odd = false;
     walls_.for_each_ahead(place, error, [&](const Segment& s) {
       const Vector<2> low = s.a.cwiseMin(s.b), high = s.a.cwiseMax(s.b);

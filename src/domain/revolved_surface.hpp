@@ -8,6 +8,7 @@ enum class RoundAs {
   inscribed,      ///< on it
   of_same_area,   ///< so that every section across the axis has the area of the round one
   circumscribed,  ///< so that the solid lies inside of the surface, touching its sides
+  within,         ///< so that the surface lies inside of the solid, to rounding
 };
 
 /// A solid of revolution as a closed mesh with so many sides around, oriented outwards; the one way in which

@@ -5,10 +5,8 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <functional>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include <fmt/format.h>
 

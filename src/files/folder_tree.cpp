@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <utility>
 
 namespace fs = std::filesystem;
 

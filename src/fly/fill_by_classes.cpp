@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "core/event_clock.hpp"
 #include "core/made.hpp"
+#include "core/order.hpp"
 #include "near/cell_grid.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/holes.hpp"
@@ -47,10 +47,7 @@ class Insertion {
                      (1 + tolerance::growth(edges_.maxCoeff() / smallest_))),
         grid_(boundary_, smallest_, std::ranges::max(spheres_.r), spheres_.size()),
         placed_(spheres_.size(), false),
-        order_(spheres_.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::ranges::stable_sort(order_, std::greater<>(), [&](Id i) { return spheres_.r[i]; });
-  }
+        order_(largest_first(spheres_.r)) {}
 
   /// `full` where not all found a place: then the others are put into holes, where they overlap. Where it is
   /// cancelled only those that found one are left.

@@ -1,8 +1,6 @@
 #include "fly/fly.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -13,7 +11,6 @@
 #include "fly/fill_by_classes.hpp"
 #include "fly/fly_events.hpp"
 #include "fly/fly_patent.hpp"
-#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {

@@ -1,10 +1,9 @@
 #include "fly/flying_spheres.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "core/every_dimension.hpp"
+#include "core/order.hpp"
 
 namespace bernal {
 
@@ -13,15 +12,13 @@ FlyingSpheres<D>::FlyingSpheres(const SpheresInBox& in_box, int axes)
     : edges_(*in_box.task.target_edges),
       drawn_(in_box.spheres.r),
       margin_(std::max(1e-10, 4 * tolerance::growth(edges_.maxCoeff() / std::ranges::min(drawn_)))),
-      queue_(drawn_.size()),
+      queue_(largest_first(drawn_)),
       mean_radius_(std::accumulate(drawn_.begin(), drawn_.end(), 0.0) / static_cast<double>(drawn_.size())),
       smallest_(std::ranges::min(drawn_)),
       largest_(std::ranges::max(drawn_)),
       skin_(std::min(0.3, 0.6 / D) * 2 * mean_radius_),
       axes_(axes) {
   for (int k = 0; k < D; ++k) repeats_[k] = !in_box.task.has_wall(k);
-  std::iota(queue_.begin(), queue_.end(), Id{0});
-  std::ranges::stable_sort(queue_, [&](Id a, Id b) { return drawn_[a] > drawn_[b]; });
   for (const double r : drawn_) whole_volume_ += std::pow(r / mean_radius_, D);
   const auto n = static_cast<Eigen::Index>(drawn_.size());
   x.resize(n, D);

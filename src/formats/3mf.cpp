@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <charconv>
-#include <memory>
 #include <numeric>
 
 #include <fmt/format.h>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "cad/write_shapes.hpp"
 #include "formats/format.hpp"
 #include "solids/flat_faces.hpp"
@@ -11,7 +12,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::size_t most_faces = 5000;  // of a container; sewing takes a minute for this many
+constexpr std::size_t most_faces = 100'000;  // of a container
 
 std::vector<cad::BallShape::Plane> planes_of(const std::vector<Cut>& cuts) {
   std::vector<cad::BallShape::Plane> planes;
@@ -76,7 +77,9 @@ std::string write_cad(const Exported& file, StagedFolder& staged) {
       "{} solids of spheres and images, volumes in OpenCASCADE within {:.1g} of the exact ones; {}",
       written.solids, off,
       written.has_container ? "the container is a solid of its own"
-                            : "the container is left out: it has too many faces");
+                            : fmt::format("the container is left out, for it has more than {} flat faces; "
+                                          "the format stl has it, with ‹surface=container›",
+                                          grouped(most_faces)));
 }
 
 template <cad::SolidFormat format>

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "files/csv_headings.hpp"
 #include "formats/foreign_lines.hpp"
 #include "formats/text_file.hpp"
 

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <numeric>
-
-#include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "files/csv_headings.hpp"

@@ -8,7 +8,6 @@
 #include "bernal/core/text.hpp"
 #include "bernal/formats/export.hpp"
 #include "core/lower_case.hpp"
-#include "files/csv_headings.hpp"
 #include "formats/format.hpp"
 
 namespace bernal {

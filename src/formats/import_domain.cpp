@@ -164,7 +164,7 @@ ImportDomain domain_of_scene(FileContents& contents, Unit unit, const Scene& sce
   made.scene.walls = scene.walls;
   const auto converted = unit_conversion(unit, scene.unit);
   Mapping{[&](double x, int) { return converted(x); }, converted}.map(contents.spheres);
-  if (std::holds_alternative<MeshFile>(scene.container)) {
+  if (!scene.container.meshes().empty()) {
     std::string notes, caution;  // the smallest radius determines the tessellation of curved parts
     made.scene.sizes = Constant{std::ranges::min(contents.spheres.r)};
     made.domain = domain_of(made.scene, notes, caution);

@@ -1,6 +1,5 @@
 #include "geometry/simplified.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "core/order.hpp"
 #include "near/box_tree.hpp"
 
 namespace bernal {
@@ -45,13 +45,11 @@ class Planes {
       const Vector<3>& a = mesh_.vertices[i];
       normals[t] = (mesh_.vertices[j] - a).cross(mesh_.vertices[k] - a);
     }
-    std::vector<std::uint32_t> order(facets);
-    std::iota(order.begin(), order.end(), 0u);
-    std::ranges::stable_sort(
-        order, [&](auto s, auto t) { return normals[s].squaredNorm() > normals[t].squaredNorm(); });
+    std::vector<double> squared_areas;
+    for (const Vector<3>& normal : normals) squared_areas.push_back(normal.squaredNorm());
     std::vector<Wall<3>> walls;
-    for (const auto t : order)
-      if (!covered_[t] && normals[t].squaredNorm() > 0) walls.push_back(wall_of(t, normals[t].normalized()));
+    for (const auto t : largest_first(squared_areas))
+      if (!covered_[t] && squared_areas[t] > 0) walls.push_back(wall_of(t, normals[t].normalized()));
     return walls;
   }
 

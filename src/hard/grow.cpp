@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -12,7 +11,6 @@
 #include "jam/polish.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/random_insertion.hpp"
-#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {

@@ -1,7 +1,5 @@
 #include "hard/walls.hpp"
 
-#include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "hard/place_on_curve.hpp"

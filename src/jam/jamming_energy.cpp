@@ -1,15 +1,14 @@
 #include "jam/jamming_energy.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 
 #include <Eigen/Cholesky>
 
 #include "bernal/core/boundary.hpp"
 #include "core/every_dimension.hpp"
+#include "core/order.hpp"
 
 namespace bernal {
 namespace {
@@ -32,17 +31,12 @@ template <int D>
 std::vector<std::uint32_t> spatial_order(const Spheres<D>& spheres, const Vector<D>& edges) {
   const double cells = std::max(1.0, std::floor(std::pow(static_cast<double>(spheres.size()), 1.0 / D)));
   const Boundary<D> box{edges};
-  std::vector<std::uint64_t> cell(spheres.size(), 0);
+  std::vector<double> cell(spheres.size(), 0);  // a whole number
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const Vector<D> c = box.wrap(spheres.center(i));
-    for (int k = 0; k < D; ++k)
-      cell[i] =
-          cell[i] * static_cast<std::uint64_t>(cells) + static_cast<std::uint64_t>(c[k] / edges[k] * cells);
+    for (int k = 0; k < D; ++k) cell[i] = cell[i] * cells + std::floor(c[k] / edges[k] * cells);
   }
-  std::vector<std::uint32_t> order(spheres.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return cell[i]; });
-  return order;
+  return smallest_first(cell);
 }
 
 /// s^(D - 2)
@@ -378,6 +372,17 @@ template <int D>
 void JammingEnergy<D>::take_back() {
   std::swap(state_, state_before_);
   std::swap(now_, before_);
+}
+
+template <int D>
+void JammingEnergy<D>::archive(Archive& a) {
+  a(order_, radius_, load_per_overlap_, load_, smoothing_, state_, now_, pairs_, at_finding_,
+    width_at_finding_, held_, fixed_);
+  if (!enclosure_) return;
+  const auto walls = std::make_shared<NearWalls<D>>();
+  if (near_walls_) *walls = *near_walls_;
+  a(*walls);
+  near_walls_ = walls;
 }
 
 template <int D>

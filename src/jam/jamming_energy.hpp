@@ -16,6 +16,64 @@
 
 namespace bernal {
 
+/// What a JammingEnergy, which see, is in any dimension.
+class JammingFunction : public SmoothFunction {
+ public:
+  static constexpr std::uint32_t wall = 0xffffffff;
+  /// Of a contact of two spheres, or of one with `wall`, force over distance.
+  struct Tension {
+    std::uint32_t first, second;
+    double tension;
+  };
+
+  virtual std::unique_ptr<JammingFunction> copy() const = 0;
+  virtual int dimension() const = 0;
+
+  /// Sets the load so that spheres with 2 D contacts each have roughly the mean overlap ratio `overlap`; the
+  /// smoothing is a ratio too. Evaluates.
+  virtual void set_level(double overlap, double smoothing) = 0;
+
+  /// The length, in the metric of the preconditioner, of a motion of all spheres by `ratio` of their
+  /// diameters.
+  double length_of(double ratio) const { return ratio * std::sqrt(load_per_overlap_); }
+
+  /// Until `release`, only the present overlaps of spheres i with bears[i] count, as springs that pull as
+  /// well as push, so that the equations of equilibrium are smooth. Precondition: smoothing 0.
+  virtual void hold(const std::vector<char>& bears) = 0;
+  /// Drops a held contact.
+  virtual void let_go(std::size_t contact) = 0;
+  /// Until `release`, spheres i with fixed[i], and the box, do not move, and fixed spheres do not meet each
+  /// other. Call set_level afterwards.
+  void fix(std::vector<char> fixed) { fixed_ = std::move(fixed); }
+  /// Contacts may form and break again, and all spheres move. Call set_level afterwards.
+  void release() {
+    held_ = false;
+    fixed_.clear();
+  }
+
+  std::size_t size() const { return radius_.size(); }
+  double radius(std::size_t i) const { return radius_[i]; }
+  /// Size of the box and its walls relative to the initial one.
+  virtual double scale() const = 0;
+  virtual std::size_t contact_count() const = 0;
+  virtual Tension tension_of(std::size_t contact) const = 0;
+  /// Energy of all springs without the part of smoothing: a scale for changes of H. Positive if anything
+  /// touches.
+  virtual double elastic_energy() const = 0;
+  /// The largest o / s; 0 if nothing overlaps.
+  virtual double largest_overlap() const = 0;
+
+  /// Its state except for the last move and the preconditioner, for an object made with the same number of
+  /// spheres and the same walls.
+  virtual void archive(Archive& a) = 0;
+
+ protected:
+  std::vector<double> radius_;
+  double load_per_overlap_ = 0;
+  bool held_ = false;
+  std::vector<char> fixed_;  // empty if none is
+};
+
 /// Soft spheres in a periodic box, or between walls, under pressure: a function of all centres and of the
 /// size of the box, walls included, whose minimum tends to a jammed packing of hard spheres as the pressure
 /// goes to zero.
@@ -43,7 +101,7 @@ namespace bernal {
 /// jamming; Dagois-Bohy, Tighe, Simon, Henkes & van Hecke, Phys. Rev. Lett. 109, 095703 (2012), the box as an
 /// unknown; Chen & Mangasarian, Comput. Optim. Appl. 5, 97 (1996), the smoothing.
 template <int D>
-class JammingEnergy final : public SmoothFunction {
+class JammingEnergy final : public JammingFunction {
  public:
   struct Contact {
     using ArchivedAsBytes = void;
@@ -54,49 +112,31 @@ class JammingEnergy final : public SmoothFunction {
     std::uint32_t first, second;
     bool is_pair() const { return second != wall; }
   };
-  static constexpr std::uint32_t wall = 0xffffffff;
 
   /// Precondition: at least one sphere. Centres may be anywhere; with walls inside these, and `edges` so
   /// large along such axes that no sphere meets an image.
   JammingEnergy(const Spheres<D>& spheres, const Vector<D>& edges,
                 std::shared_ptr<const Enclosure<D>> enclosure = nullptr);
 
-  /// Sets the load so that spheres with 2 D contacts each have roughly the mean overlap ratio `overlap`; the
-  /// smoothing is a ratio too. Evaluates.
-  void set_level(double overlap, double smoothing);
+  std::unique_ptr<JammingFunction> copy() const override { return std::make_unique<JammingEnergy>(*this); }
+  int dimension() const override { return D; }
+  void set_level(double overlap, double smoothing) override;
+  void hold(const std::vector<char>& bears) override;
+  void let_go(std::size_t contact) override;
 
-  /// The length, in the metric of the preconditioner, of a motion of all spheres by `ratio` of their
-  /// diameters.
-  double length_of(double ratio) const { return ratio * std::sqrt(load_per_overlap_); }
-
-  /// Until `release`, only the present overlaps of spheres i with bears[i] count, as springs that pull as
-  /// well as push, so that the equations of equilibrium are smooth. Precondition: smoothing 0.
-  void hold(const std::vector<char>& bears);
-  /// Drops a held contact.
-  void let_go(std::size_t contact);
-  /// Until `release`, spheres i with fixed[i], and the box, do not move, and fixed spheres do not meet each
-  /// other. Call set_level afterwards.
-  void fix(std::vector<char> fixed) { fixed_ = std::move(fixed); }
-  /// Contacts may form and break again, and all spheres move. Call set_level afterwards.
-  void release() {
-    held_ = false;
-    fixed_.clear();
-  }
-
-  std::size_t size() const { return radius_.size(); }
-  double radius(std::size_t i) const { return radius_[i]; }
   Eigen::Index unknowns() const override { return static_cast<Eigen::Index>(D * size() + 1); }
   const Vector<D>& edges() const { return state_.edges; }
-  /// Size of the box and its walls relative to the initial one.
-  double scale() const { return state_.scale; }
+  double scale() const override { return state_.scale; }
   /// Those of pairs come first.
   const std::vector<Contact>& contacts() const { return now_.contacts; }
+  std::size_t contact_count() const override { return now_.contacts.size(); }
+  Tension tension_of(std::size_t contact) const override {
+    const Contact& c = now_.contacts[contact];
+    return {c.first, c.second, c.tension};
+  }
   const Eigen::VectorXd& gradient() const override { return now_.gradient; }
-  /// Energy of all springs without the part of smoothing: a scale for changes of H. Positive if anything
-  /// touches.
-  double elastic_energy() const { return now_.elastic; }
-  /// The largest o / s; 0 if nothing overlaps.
-  double largest_overlap() const { return now_.largest_overlap; }
+  double elastic_energy() const override { return now_.elastic; }
+  double largest_overlap() const override { return now_.largest_overlap; }
 
   /// out = Hessian · v.
   void hessian_times(const Eigen::VectorXd& v, Eigen::VectorXd& out) const override;
@@ -117,17 +157,7 @@ class JammingEnergy final : public SmoothFunction {
   /// Sets the centres unwrapped, relative to the box's initial size (scale 1).
   void write_to_scale(Spheres<D>& spheres) const;
 
-  /// Its state except for the last move and the preconditioner, for an object made with the same number of
-  /// spheres and the same walls.
-  void archive(Archive& a) {
-    a(order_, radius_, load_per_overlap_, load_, smoothing_, state_, now_, pairs_, at_finding_,
-      width_at_finding_, held_, fixed_);
-    if (!enclosure_) return;
-    const auto walls = std::make_shared<NearWalls<D>>();
-    if (near_walls_) *walls = *near_walls_;
-    a(*walls);
-    near_walls_ = walls;
-  }
+  void archive(Archive& a) override;
 
  private:
   struct State {
@@ -165,9 +195,7 @@ class JammingEnergy final : public SmoothFunction {
 
   Made made_{"polish"};
   std::vector<std::uint32_t> order_;  // index of a sphere here -> its number outside
-  std::vector<double> radius_;
   double least_radius_ = 0, largest_radius_ = 0;
-  double load_per_overlap_ = 0;
   double load_ = 0, smoothing_ = 0;
 
   State state_, state_before_;
@@ -178,8 +206,6 @@ class JammingEnergy final : public SmoothFunction {
   std::shared_ptr<const NearWalls<D>> near_walls_;  // null without walls
   State at_finding_;
   double width_at_finding_ = 0;
-  bool held_ = false;
-  std::vector<char> fixed_;  // empty if none is
 
   std::vector<Block> inverse_blocks_;
   double inverse_dilation_ = 0;

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <memory>
-#include <optional>
-#include <tuple>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -59,12 +55,12 @@ struct PolishTask {
   Checkpoints* checkpoints = nullptr;
 };
 
-template <int D>
 class Polish {
  public:
-  Polish(JammingEnergy<D> soft, PolishTask task) : soft_(std::move(soft)), task_(std::move(task)) {
-    const auto n = static_cast<double>(soft_.size());
-    balance_ = soft_.size() <= solved_closely ? close_balance : loose_balance;
+  Polish(std::unique_ptr<JammingFunction> soft, PolishTask task)
+      : soft_(std::move(soft)), task_(std::move(task)) {
+    const auto n = static_cast<double>(soft_->size());
+    balance_ = soft_->size() <= solved_closely ? close_balance : loose_balance;
     settled_ = std::min(1e-6, 0.1 / (n * n));
   }
 
@@ -74,11 +70,11 @@ class Polish {
     std::optional<Checkpoints::Part> part;
     if (task_.checkpoints)
       part.emplace(*task_.checkpoints, "polish", [&](Archive& a) {
-        a(overlap, is_settled, soft_, start_, imbalance_, overlap_, done_, unfinished_, climbs_);
+        a(overlap, is_settled, *soft_, start_, imbalance_, overlap_, done_, unfinished_, climbs_);
       });
     if (!part || !part->resumed()) {
-      soft_.set_level(task_.start, 0);
-      overlap = start_ = std::clamp(soft_.largest_overlap(), task_.start, hardest_start);
+      soft_->set_level(task_.start, 0);
+      overlap = start_ = std::clamp(soft_->largest_overlap(), task_.start, hardest_start);
     }
     for (;; is_settled = false) {
       if (!is_settled) {
@@ -99,13 +95,13 @@ class Polish {
         continue;
       }
       // What is in equilibrium there has no more contacts at less, and the coordinates allow no better.
-      if (soft_.largest_overlap() <= task_.tolerance || overlap * fall_of_pressure < resolution()) break;
+      if (soft_->largest_overlap() <= task_.tolerance || overlap * fall_of_pressure < resolution()) break;
       overlap *= fall_of_pressure;
     }
     return result();
   }
 
-  const JammingEnergy<D>& soft() const { return soft_; }
+  const JammingFunction& soft() const { return *soft_; }
   /// How many spheres are no rattlers.
   std::size_t held() {
     count_contacts();
@@ -114,8 +110,8 @@ class Polish {
   /// Their share of the volume, as they were counted last.
   double held_volume() const {
     double all = 0, held = 0;
-    for (std::size_t i = 0; i < soft_.size(); ++i) {
-      const double volume = ball_volume(D, soft_.radius(i));
+    for (std::size_t i = 0; i < soft_->size(); ++i) {
+      const double volume = ball_volume(soft_->dimension(), soft_->radius(i));
       all += volume;
       if (backbone_.has[i]) held += volume;
     }
@@ -123,7 +119,7 @@ class Polish {
   }
   /// Under a load overlaps make it smaller than it will be: of spheres that two contacts hold by D times the
   /// overlap of those that 2 D hold.
-  bool too_loose() const { return soft_.scale() < task_.least_scale / (1 + D * overlap_); }
+  bool too_loose() const { return soft_->scale() < task_.least_scale / (1 + soft_->dimension() * overlap_); }
 
  private:
   struct Level {
@@ -146,10 +142,13 @@ class Polish {
   /// Takes the smoothing away and closes the contacts. It has no state of its own: cut short, it leaves all
   /// as it was, and so does a checkpoint. Returns whether they are closed.
   bool close(double overlap) {
-    const auto before = std::tuple(soft_, imbalance_, overlap_, done_, unfinished_);
+    const Saved before = save();
+    const double overlap_before = overlap_, done_before = done_;
     const bool closed = sharpen(overlap) && (is_closed() || close_contacts(overlap));
     if (cancelled_) {
-      std::tie(soft_, imbalance_, overlap_, done_, unfinished_) = before;
+      restore(before);
+      overlap_ = overlap_before;
+      done_ = done_before;
       milestones_.clear();
       if (task_.checkpoints) task_.checkpoints->stop();
     }
@@ -171,34 +170,34 @@ class Polish {
     count_contacts();
     if (excess() < 0 || excess() > most_let_go) return false;
     std::ptrdiff_t spare = excess();
-    const auto before = std::tuple(soft_, imbalance_, unfinished_);
+    const Saved before = save();
     const auto give_up = [&] {
-      std::tie(soft_, imbalance_, unfinished_) = before;
+      restore(before);
       return false;
     };
-    const double fall = 0.5 * task_.tolerance / soft_.largest_overlap();
-    soft_.hold(backbone_.has);
+    const double fall = 0.5 * task_.tolerance / soft_->largest_overlap();
+    soft_->hold(backbone_.has);
     for (;;) {
-      const JammingEnergy<D> held = soft_;
+      std::unique_ptr<JammingFunction> held = soft_->copy();
       if (!settle({overlap * fall, 0, 0.1 * balance_, held_way, 1e-4, most_steps_when_held}) ||
           imbalance_ >= balanced)
         return give_up();
-      const auto first = first_to_pull(held.contacts(), soft_.contacts());
+      const auto first = first_to_pull(*held, *soft_);
       if (first < 0) break;
-      soft_ = held;
+      soft_ = std::move(held);
       if (spare-- == 0) break;
-      soft_.let_go(static_cast<std::size_t>(first));
+      soft_->let_go(static_cast<std::size_t>(first));
     }
-    soft_.release();
+    soft_->release();
     if (!make_room_for_rattlers()) return give_up();
-    soft_.set_level(overlap * fall, 0);
+    soft_->set_level(overlap * fall, 0);
     return is_closed() || give_up();
   }
 
   /// Whether nothing overlaps by more than is asked for, forces balance, and as many contacts bear them as it
   /// takes to hold the spheres.
   bool is_closed() {
-    if (soft_.largest_overlap() > task_.tolerance || !(imbalance_ < balanced)) return false;
+    if (soft_->largest_overlap() > task_.tolerance || !(imbalance_ < balanced)) return false;
     count_contacts();
     return backbone_.spheres > 0 && excess() >= 0;
   }
@@ -206,24 +205,23 @@ class Polish {
   /// Moves rattlers that the others have come to overlap back into their cages. Returns false if cancelled.
   bool make_room_for_rattlers() {
     const double imbalance = imbalance_;
-    soft_.fix(backbone_.has);
+    soft_->fix(backbone_.has);
     for (double gap = room; gap > 1e-3 * task_.tolerance; gap *= 1e-2)
-      if (!settle({gap, gap, loose_balance}) || soft_.largest_overlap() <= task_.tolerance) break;
-    soft_.release();
+      if (!settle({gap, gap, loose_balance}) || soft_->largest_overlap() <= task_.tolerance) break;
+    soft_->release();
     imbalance_ = imbalance;
     return !cancelled_;
   }
 
   /// Of the same contacts at two levels of pressure: which one's force, linear in between, is the first to
   /// vanish; -1 if none does.
-  static std::ptrdiff_t first_to_pull(const std::vector<typename JammingEnergy<D>::Contact>& high,
-                                      const std::vector<typename JammingEnergy<D>::Contact>& low) {
+  static std::ptrdiff_t first_to_pull(const JammingFunction& high, const JammingFunction& low) {
     std::ptrdiff_t first = -1;
     double least = 0;
-    for (std::size_t c = 0; c < low.size(); ++c) {
-      if (low[c].tension > 0) continue;
-      const double remaining =
-          low[c].tension / high[c].tension;  // 0 or less: the smaller, the earlier it was 0
+    for (std::size_t c = 0; c < low.contact_count(); ++c) {
+      const double tension = low.tension_of(c).tension;
+      if (tension > 0) continue;
+      const double remaining = tension / high.tension_of(c).tension;  // 0 or less: the smaller, the earlier
       if (first < 0 || remaining < least) {
         first = static_cast<std::ptrdiff_t>(c);
         least = remaining;
@@ -235,7 +233,7 @@ class Polish {
   /// Contacts beyond the isostatic number.
   std::ptrdiff_t excess() const {
     return static_cast<std::ptrdiff_t>(backbone_.holds) -
-           isostatic_number(D, backbone_.spheres, task_.symmetries);
+           isostatic_number(soft_->dimension(), backbone_.spheres, task_.symmetries);
   }
 
   /// Minimises at one level of pressure. Returns false if cancelled or too loose.
@@ -252,35 +250,35 @@ class Polish {
         a(step, radius);
       });
     if (!part || !part->resumed()) {
-      soft_.set_level(overlap, level.smoothing);
-      radius = soft_.length_of(level.radius > 0 ? level.radius : 10 * overlap);
+      soft_->set_level(overlap, level.smoothing);
+      radius = soft_->length_of(level.radius > 0 ? level.radius : 10 * overlap);
     }
     const double noise = resolution() / overlap;
-    TrustRegion& region = made.emplace(soft_, radius, level.forcing, task_.monitor);
+    TrustRegion& region = made.emplace(*soft_, radius, level.forcing, task_.monitor);
     const int most_steps = level.most_steps > 0 ? level.most_steps : task_.most_steps;
     for (;; ++step) {
       if (step == most_steps) {
         unfinished_ = unfinished_ || imbalance_ > loose_balance;
         break;
       }
-      imbalance_ = region.gradient_length() / std::sqrt(2 * soft_.elastic_energy());
+      imbalance_ = region.gradient_length() / std::sqrt(2 * soft_->elastic_energy());
       if (!(imbalance_ >= std::max(level.balance, 4 * noise))) break;  // or there is neither force nor load
       if (checkpoints ? checkpoints->stop() : task_.monitor.stop()) {
         cancelled_ = true;
         return false;
       }
       tell();
-      const bool moved = region.step(std::max(1e-6, noise) * soft_.elastic_energy());
+      const bool moved = region.step(std::max(1e-6, noise) * soft_->elastic_energy());
       if (region.stopped()) {
         if (checkpoints) checkpoints->stop();  // which writes one, of what was before the step
         cancelled_ = true;
         return false;
       }
-      if (!moved && region.radius() < soft_.length_of(resolution())) break;  // what is left is rounding
+      if (!moved && region.radius() < soft_->length_of(resolution())) break;  // what is left is rounding
     }
     if (too_loose()) return false;  // not before: on its way the box may be smaller than it will be
     done_ = std::clamp(std::log(overlap / start_) / std::log(0.1 * task_.tolerance / start_), done_, 0.99);
-    milestones_.emplace_back(done_, soft_.largest_overlap());
+    milestones_.emplace_back(done_, soft_->largest_overlap());
     return true;
   }
 
@@ -296,7 +294,7 @@ class Polish {
     since_told_ = {};
     task_.monitor.report({"polish", done_,
                           fmt::format("{} contacts, forces balanced to {:.0e}, largest overlap {:.1e}",
-                                      soft_.contacts().size(), imbalance_, soft_.largest_overlap())});
+                                      soft_->contact_count(), imbalance_, soft_->largest_overlap())});
   }
 
   /// An overlap ratio that is lost in the rounding of coordinates.
@@ -310,12 +308,26 @@ class Polish {
   /// Those that bear force.
   void count_contacts() {
     std::vector<Hold> holds;
-    for (const auto& c : soft_.contacts())
-      if (c.tension > 0) holds.push_back({c.first, c.is_pair() ? c.second : Hold::wall});
-    backbone_ = backbone_of(D, soft_.size(), holds);
+    for (std::size_t k = 0; k < soft_->contact_count(); ++k)
+      if (const auto c = soft_->tension_of(k); c.tension > 0)
+        holds.push_back({c.first, c.second == JammingFunction::wall ? Hold::wall : c.second});
+    backbone_ = backbone_of(soft_->dimension(), soft_->size(), holds);
   }
 
-  JammingEnergy<D> soft_;
+  /// What is taken back where contacts do not close.
+  struct Saved {
+    std::unique_ptr<JammingFunction> soft;
+    double imbalance;
+    bool unfinished;
+  };
+  Saved save() const { return {soft_->copy(), imbalance_, unfinished_}; }
+  void restore(const Saved& saved) {
+    soft_ = saved.soft->copy();
+    imbalance_ = saved.imbalance;
+    unfinished_ = saved.unfinished;
+  }
+
+  std::unique_ptr<JammingFunction> soft_;
   const PolishTask task_;
   double balance_, settled_;
   double start_ = gentlest_start;
@@ -339,8 +351,10 @@ StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, const S
   const auto walls = static_cast<int>(std::ranges::count(in_box.task.walls, true));
   std::shared_ptr<const Enclosure<D>> enclosure;
   if (walls > 0) enclosure = std::make_shared<Enclosure<D>>(edges, in_box.task.walls);
-  Polish<D> act(
-      {spheres, edges_around_walls(edges, in_box.task.walls), enclosure},
+  auto soft =
+      std::make_unique<JammingEnergy<D>>(spheres, edges_around_walls(edges, in_box.task.walls), enclosure);
+  Polish act(
+      std::move(soft),
       {.tolerance = tolerance,
        .slenderness = edges.maxCoeff() / std::ranges::min(spheres.r),
        .symmetries = D - walls,
@@ -348,11 +362,12 @@ StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, const S
        .report = [&](double done, double overlap) { report.milestone("polish", in_box, overlap, done); },
        .checkpoints = report.checkpoints});
   const StageEnd end = act.run();
-  act.soft().write(spheres);
+  const auto& polished = dynamic_cast<const JammingEnergy<D>&>(act.soft());
+  polished.write(spheres);
   if (walls > 0)
-    edges *= act.soft().scale();
+    edges *= polished.scale();
   else
-    edges = act.soft().edges();
+    edges = polished.edges();
   return end;
 }
 
@@ -360,20 +375,21 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
                            double tolerance, const Monitor& monitor,
                            const std::function<void(double, double)>& report, Checkpoints* checkpoints) {
   const Vector<3> edges = edges_around(container, std::ranges::max(spheres.r));
-  Polish<3> act({spheres, edges, std::make_shared<Enclosure<3>>(container)},
-                {.tolerance = tolerance,
-                 .slenderness = container.bounds().size().maxCoeff() / std::ranges::min(spheres.r),
-                 .symmetries = symmetries,
-                 .start = loose_start,
-                 .most_steps = most_steps_when_loose,
-                 .most_climbs = most_climbs,
-                 .least_scale = 1 / Jammed::most_growth,
-                 .monitor = monitor,
-                 .report = report,
-                 .checkpoints = checkpoints});
+  auto soft = std::make_unique<JammingEnergy<3>>(spheres, edges, std::make_shared<Enclosure<3>>(container));
+  Polish act(std::move(soft),
+             {.tolerance = tolerance,
+              .slenderness = container.bounds().size().maxCoeff() / std::ranges::min(spheres.r),
+              .symmetries = symmetries,
+              .start = loose_start,
+              .most_steps = most_steps_when_loose,
+              .most_climbs = most_climbs,
+              .least_scale = 1 / Jammed::most_growth,
+              .monitor = monitor,
+              .report = report,
+              .checkpoints = checkpoints});
   const StageEnd end = act.run();
   Jammed jammed{end, spheres, 1, act.too_loose(), act.held(), act.held_volume()};
-  act.soft().write_to_scale(jammed.spheres);
+  dynamic_cast<const JammingEnergy<3>&>(act.soft()).write_to_scale(jammed.spheres);
   jammed.growth = (1 - act.soft().largest_overlap()) / act.soft().scale();
   return jammed;
 }

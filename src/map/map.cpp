@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 

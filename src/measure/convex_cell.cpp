@@ -1,9 +1,7 @@
 #include "measure/convex_cell.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <limits>
 
 namespace bernal {

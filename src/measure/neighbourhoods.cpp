@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"

@@ -30,7 +30,7 @@ std::vector<double> distances_in_period(const Spheres<dynamic>& packed, const Do
     parallel_for((points + points_a_part - 1) / points_a_part, [&](std::size_t part) {
       Random random(3, stream(Stream::measure, part));
       for (std::size_t k = part * points_a_part; k < std::min(points, (part + 1) * points_a_part); ++k)
-        found[k] = tree.template nearest<typename SphereTree<D>::Gap>(uniform_point<D>(random, period)).value;
+        found[k] = tree.nearest(uniform_point<D>(random, period)).gap;
     });
   });
   return found;
@@ -49,8 +49,8 @@ std::vector<double> distances_between_walls(const Spheres<dynamic>& packed, cons
   std::vector<double> found(inside.size());
   parallel_for((inside.size() + points_a_part - 1) / points_a_part, [&](std::size_t part) {
     for (std::size_t k = part * points_a_part; k < std::min(inside.size(), (part + 1) * points_a_part); ++k) {
-      const auto sphere = tree.nearest<SphereTree<3>::Gap>(inside[k]);
-      found[k] = frame.scale * std::min(sphere.value, container.clearance_within(inside[k], sphere.value));
+      const double gap = tree.nearest(inside[k]).gap;
+      found[k] = frame.scale * std::min(gap, container.clearance_within(inside[k], gap));
     }
   });
   return found;

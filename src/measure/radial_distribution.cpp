@@ -42,13 +42,24 @@ double shell_volume(int dimension, double from, double to) {
   return ball_volume(dimension, to) - ball_volume(dimension, from);
 }
 
+/// How many bins end where two spheres of the smallest radius touch, or nearer. No pair can be in them, so
+/// that nothing is left to chance; where spheres overlap and one is, there are no such bins.
+std::size_t bins_below_contact(const std::vector<std::uint64_t>& counts, double width, double smallest) {
+  const auto bins =
+      std::min(counts.size(), static_cast<std::size_t>(std::floor(2 * smallest / width + slack)));
+  const bool is_hard = std::all_of(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(bins),
+                                   [](std::uint64_t count) { return count == 0; });
+  return is_hard ? bins : 0;
+}
+
 /// Pairs of two references count from both ends; the error is that of the expected number of distinct pairs.
-void normalise(const std::vector<std::uint64_t>& counts, int dimension, std::size_t spheres, double volume,
-               RadialDistribution& radial) {
+void normalise(const std::vector<std::uint64_t>& counts, int dimension, const std::vector<double>& radii,
+               std::size_t spheres, double volume, RadialDistribution& radial) {
   const auto n = static_cast<double>(spheres);
   const auto references = static_cast<double>(radial.references);
   const double density = (n - 1) / volume;
   const double distinct = share_of_distinct(radial.references, spheres);
+  const std::size_t empty = bins_below_contact(counts, radial.bin_width, *std::ranges::min_element(radii));
   for (std::size_t k = 0; k < counts.size(); ++k) {
     const double from = static_cast<double>(k) * radial.bin_width, to = from + radial.bin_width;
     const double share = radial.share.empty() ? 1 : radial.share[k];
@@ -57,6 +68,10 @@ void normalise(const std::vector<std::uint64_t>& counts, int dimension, std::siz
     const double g = count / expected;
     radial.r.push_back(0.5 * (from + to));
     radial.g.push_back(g);
+    if (k < empty) {
+      radial.error.push_back(0);
+      continue;
+    }
     const double of_share = radial.share.empty() ? 0 : g * radial.share_error[k] / share;
     radial.error.push_back(std::hypot(std::sqrt(std::max(1.0, count / distinct)) / expected, of_share));
   }
@@ -163,7 +178,7 @@ void between_walls(const Spheres<dynamic>& spheres, const Domain& domain, const 
   const Histogram empty(radial.share.size(), width);
   const Histogram found = tally_of_pairs<3>(centers, localised(boundary_of<3>(domain), frame), empty,
                                             options.work, radial.references);
-  normalise(found.counts(), 3, centers.size(), window.volume * std::pow(frame.scale, 3), radial);
+  normalise(found.counts(), 3, spheres.r, centers.size(), window.volume * std::pow(frame.scale, 3), radial);
 }
 
 }  // namespace
@@ -203,7 +218,7 @@ std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>& sp
     found =
         tally_of_pairs<D>(spheres.in<D>(), boundary_of<D>(domain), empty, options.work, radial.references);
   });
-  normalise(found.counts(), spheres.dimension(), spheres.size(), volume_of(domain), radial);
+  normalise(found.counts(), spheres.dimension(), radii, spheres.size(), volume_of(domain), radial);
   find_peaks(radial);
   return radial;
 }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <memory>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,7 +10,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
-#include "bernal/domain/container.hpp"
+#include "core/every_dimension.hpp"
 #include "core/parallel.hpp"
 #include "measure/localised.hpp"
 #include "measure/patch.hpp"
@@ -382,16 +380,9 @@ std::vector<WallBond> wall_bonds(const Spheres<dynamic>& spheres, const Domain& 
   return near;
 }
 
-#define BERNAL_BONDS_IN(D) \
-  template std::vector<BondIn<D>> bonds_in<D>(const Spheres<dynamic>&, const Domain&, double)
-BERNAL_BONDS_IN(1);
-BERNAL_BONDS_IN(2);
-BERNAL_BONDS_IN(3);
-BERNAL_BONDS_IN(4);
-BERNAL_BONDS_IN(5);
-BERNAL_BONDS_IN(6);
-BERNAL_BONDS_IN(7);
-BERNAL_BONDS_IN(8);
-#undef BERNAL_BONDS_IN
+#define BERNAL_INSTANTIATE(D) \
+  template std::vector<BondIn<D>> bonds_in<D>(const Spheres<dynamic>&, const Domain&, double);
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

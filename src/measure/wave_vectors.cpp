@@ -6,6 +6,8 @@
 #include <set>
 
 #include "bernal/core/random.hpp"
+#include "core/every_dimension.hpp"
+#include "core/order.hpp"
 
 namespace bernal {
 namespace {
@@ -65,9 +67,12 @@ void for_each_multiple(const Vector<D>& step, double longest, Visit&& visit) {
 template <int D>
 void thin_out(std::vector<WaveVector<D>>& vectors, std::size_t most) {
   if (vectors.size() <= most) return;
-  std::ranges::stable_sort(vectors, {}, &WaveVector<D>::length);
+  std::vector<double> lengths;
+  for (const WaveVector<D>& vector : vectors) lengths.push_back(vector.length);
+  const std::vector<std::uint32_t> order = smallest_first(lengths);
   std::vector<WaveVector<D>> some;
-  for (std::size_t k = 0; k < most; ++k) some.push_back(vectors[(2 * k + 1) * vectors.size() / (2 * most)]);
+  for (std::size_t k = 0; k < most; ++k)
+    some.push_back(vectors[order[(2 * k + 1) * order.size() / (2 * most)]]);
   vectors.swap(some);
 }
 
@@ -112,17 +117,10 @@ std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, dou
   return found;
 }
 
-#define BERNAL_WAVE_VECTORS(D)                                                            \
+#define BERNAL_INSTANTIATE(D)                                                             \
   template std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>&, double, \
                                                                 const std::vector<std::size_t>&);
-BERNAL_WAVE_VECTORS(1)
-BERNAL_WAVE_VECTORS(2)
-BERNAL_WAVE_VECTORS(3)
-BERNAL_WAVE_VECTORS(4)
-BERNAL_WAVE_VECTORS(5)
-BERNAL_WAVE_VECTORS(6)
-BERNAL_WAVE_VECTORS(7)
-BERNAL_WAVE_VECTORS(8)
-#undef BERNAL_WAVE_VECTORS
+BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
+#undef BERNAL_INSTANTIATE
 
 }  // namespace bernal

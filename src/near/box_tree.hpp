@@ -1,15 +1,11 @@
 #pragma once
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "bernal/core/vector.hpp"
-#include "core/parallel.hpp"
 
 namespace bernal {
 
@@ -42,19 +38,9 @@ class BoxTree {
 
   BoxTree() = default;
   /// Leaves have at most `leaf` items.
-  BoxTree(const std::vector<Bounds<D>>& boxes, std::uint32_t leaf)
-      : BoxTree(
-            boxes.size(), leaf, [&](Id i) -> const Bounds<D>& { return boxes[i]; },
-            [&](Id i, int k) { return boxes[i].lower[k] + boxes[i].upper[k]; }, [](Id) { return 0.0; }) {}
+  BoxTree(const std::vector<Bounds<D>>& boxes, std::uint32_t leaf);
   /// Points, each with a size, or all with none.
-  BoxTree(const std::vector<Vector<D>>& points, std::span<const double> sizes, std::uint32_t leaf)
-      : BoxTree(
-            points.size(), leaf,
-            [&](Id i) {
-              return Bounds<D>{points[i], points[i]};
-            },
-            [&](Id i, int k) { return points[i][k]; }, [&](Id i) { return sizes.empty() ? 0.0 : sizes[i]; }) {
-  }
+  BoxTree(const std::vector<Vector<D>>& points, std::span<const double> sizes, std::uint32_t leaf);
 
   /// The items; those of a node stand together.
   const std::vector<Id>& order() const { return order_; }
@@ -122,43 +108,8 @@ class BoxTree {
  private:
   static constexpr std::size_t deepest = 40;  // of 2^32 items, one on each level and one more
 
-  template <class BoundsOf, class MiddleOf, class SizeOf>
-  BoxTree(std::size_t items, std::uint32_t leaf, const BoundsOf& bounds_of, const MiddleOf& middle_of,
-          const SizeOf& size_of)
-      : order_(items) {
-    if (items == 0) return;
-    std::iota(order_.begin(), order_.end(), Id{0});
-    const auto node_of = [&](std::uint32_t first, std::uint32_t last) {
-      Node made{.bounds = bounds_of(order_[first]), .first = first, .last = last};
-      for (std::uint32_t k = first; k < last; ++k) {
-        const Bounds<D>& bounds = bounds_of(order_[k]);
-        made.bounds.lower = made.bounds.lower.cwiseMin(bounds.lower);
-        made.bounds.upper = made.bounds.upper.cwiseMax(bounds.upper);
-        made.largest = std::max(made.largest, size_of(order_[k]));
-      }
-      return made;
-    };
-    nodes_.push_back(node_of(0, static_cast<std::uint32_t>(items)));
-    // Those of a depth at once, one after the other in the array.
-    for (std::size_t first = 0, last = 1; first < last; first = last, last = nodes_.size()) {
-      std::size_t count = last;
-      for (std::size_t k = first; k < last; ++k)
-        if (nodes_[k].size() > leaf) nodes_[k].children = static_cast<std::uint32_t>((count += 2) - 2);
-      nodes_.resize(count);
-      parallel_for(first, last, [&](std::size_t k) {
-        const Node& parent = nodes_[k];
-        if (parent.children == 0) return;
-        int axis = 0;
-        parent.bounds.size().maxCoeff(&axis);
-        const std::uint32_t middle = parent.first + parent.size() / 2;
-        std::nth_element(
-            order_.begin() + parent.first, order_.begin() + middle, order_.begin() + parent.last,
-            [&](Id a, Id b) { return std::pair(middle_of(a, axis), a) < std::pair(middle_of(b, axis), b); });
-        nodes_[parent.children] = node_of(parent.first, middle);
-        nodes_[parent.children + 1] = node_of(middle, parent.last);
-      });
-    }
-  }
+  void build(std::span<const Vector<D>> lower, std::span<const Vector<D>> upper, std::span<const double> sizes,
+             std::uint32_t leaf);
 
   std::vector<Id> order_;
   std::vector<Node> nodes_;

@@ -1,7 +1,5 @@
 #include "near/cell_layout.hpp"
 
-#include <algorithm>
-
 #include "core/every_dimension.hpp"
 
 namespace bernal {

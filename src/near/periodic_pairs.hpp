@@ -9,6 +9,7 @@
 
 #include "bernal/core/boundary.hpp"
 #include "core/archive.hpp"
+#include "core/order.hpp"
 #include "near/cell_grid.hpp"
 
 namespace bernal {
@@ -68,10 +69,7 @@ void PeriodicPairs<D>::find(const double* centers, const std::vector<double>& ra
   const Boundary<D> box{edges};
   CellGrid<D> grid(box, least, most, radius.size());
   // Each pair is met when its smaller sphere comes, which need not reach far for the larger.
-  std::vector<std::uint32_t> order(radius.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::stable_sort(order, [&](auto i, auto j) { return radius[i] > radius[j]; });
-  for (const std::uint32_t i : order) {
+  for (const std::uint32_t i : largest_first(radius)) {
     const Center c(centers + D * std::size_t{i});
     const Vector<D> wrapped = box.wrap(c);
     grid.insert(i, wrapped, radius[i]);

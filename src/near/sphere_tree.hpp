@@ -1,10 +1,7 @@
 #pragma once
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "bernal/core/boundary.hpp"
@@ -13,40 +10,22 @@
 
 namespace bernal {
 
-/// The spheres in a tree of the boxes of their centres, for questions that depend on radii: which sphere has
-/// the least power at a point, which surface is nearest. Open and periodic axes together. Cost: as of
+/// The spheres in a tree of the boxes of their centres, for questions that depend on radii: which surface is
+/// nearest, what a moving ball meets first. Open and periodic axes together. Cost: as of
 /// `BoxTree`; memory about 30 bytes more a sphere.
 template <int D>
 class SphereTree {
  public:
   using Node = typename BoxTree<D>::Node;
 
-  /// The squared distance of a point from a centre, and the radius, as a number: the less, the nearer.
-  struct Power {
-    static double of(double squared_distance, double r) { return squared_distance - r * r; }
-  };
-  struct Gap {
-    static double of(double squared_distance, double r) { return std::sqrt(squared_distance) - r; }
-  };
-
   /// A sphere, and where its image lies that is meant.
   struct Found {
     std::uint32_t place = 0;  ///< in the order of the tree
     Vector<D> center = Vector<D>::Zero();
-    double value = std::numeric_limits<double>::infinity();
+    double gap = std::numeric_limits<double>::infinity();  ///< the distance from its surface, negative inside
   };
 
-  SphereTree(const Spheres<D>& spheres, const Boundary<D>& boundary)
-      : boundary_(boundary), shifts_(shifts_of(boundary)) {
-    std::vector<Vector<D>> wrapped;
-    wrapped.reserve(spheres.size());
-    for (std::size_t i = 0; i < spheres.size(); ++i) wrapped.push_back(boundary.wrap(spheres.center(i)));
-    tree_ = BoxTree<D>(wrapped, spheres.r, leaf);
-    for (const std::uint32_t id : tree_.order()) {
-      centers_.push_back(wrapped[id]);
-      radii_.push_back(spheres.r[id]);
-    }
-  }
+  SphereTree(const Spheres<D>& spheres, const Boundary<D>& boundary);
 
   std::size_t size() const { return radii_.size(); }
   // By place in the order of the tree; those of a node stand together.
@@ -54,28 +33,9 @@ class SphereTree {
   const Vector<D>& center(std::uint32_t place) const { return centers_[place]; }
   double radius(std::uint32_t place) const { return radii_[place]; }
 
-  /// The sphere with the least Measure at p, if that is below `limit`; else Found::value is `limit`. Of an
-  /// axis with a period the images next to the one that p is in are enough. Precondition: p anywhere.
-  template <class Measure>
-  Found nearest(const Vector<D>& p, double limit = std::numeric_limits<double>::infinity()) const {
-    Found found;
-    found.value = limit;
-    const Vector<D> in_period = boundary_.wrap(p);
-    for (const Vector<D>& shift : shifts_) {
-      const Vector<D> moved = in_period - shift;
-      tree_.for_each_leaf_below(
-          found.value,
-          [&](const Node& node) { return Measure::of(squared_distance(node.bounds, moved), node.largest); },
-          [&](const Node& node) {
-            for (std::uint32_t k = node.first; k < node.last; ++k) {
-              const double value = Measure::of((moved - centers_[k]).squaredNorm(), radii_[k]);
-              if (value < found.value) found = {k, centers_[k] + shift, value};
-            }
-          });
-    }
-    found.center += p - in_period;
-    return found;
-  }
+  /// The sphere whose surface is nearest to p. Of an axis with a period the images next to the one that p is
+  /// in are enough. Precondition: p anywhere.
+  Found nearest(const Vector<D>& p) const;
 
   /// Calls visit(leaf, shift, squared) for the leaves and their images, moved by `shift`, whose bounds are
   /// about as near as may(squared, largest radius) says for the squared distance of p from them: what it says
@@ -116,44 +76,13 @@ class SphereTree {
   }
 
  private:
-  static constexpr std::uint32_t leaf = 8;
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// None first, as that is where most is found.
-  static std::vector<Vector<D>> shifts_of(const Boundary<D>& boundary) {
-    std::vector<Vector<D>> shifts = {Vector<D>::Zero()};
-    std::array<int, D> at;
-    for (int k = 0; k < D; ++k) at[k] = boundary.repeats(k) ? -1 : 0;
-    const std::array<int, D> lowest = at;
-    for (int k = 0; k < D;) {
-      Vector<D> shift;
-      for (int axis = 0; axis < D; ++axis) shift[axis] = at[axis] * boundary.edges[axis];
-      if (!shift.isZero(0)) shifts.push_back(shift);
-      for (k = 0; k < D && (!boundary.repeats(k) || ++at[k] > 1); ++k) at[k] = lowest[k];
-    }
-    return shifts;
-  }
-
   /// From which t on the moving ball may touch spheres of a node; infinite where it does not before `limit`.
-  static double entry(const Node& node, const Vector<D>& p, double r, const Vector<D>& u, double limit) {
-    const double reach = r + node.largest;
-    double first = 0, last = limit;
-    for (int k = 0; k < D; ++k) {
-      const double to_lower = node.bounds.lower[k] - reach - p[k],
-                   to_upper = node.bounds.upper[k] + reach - p[k];
-      if (u[k] == 0) {
-        if (to_lower > 0 || to_upper < 0) return infinity;
-        continue;
-      }
-      const auto [near, far] = std::minmax({to_lower / u[k], to_upper / u[k]});
-      first = std::max(first, near);
-      last = std::min(last, far);
-    }
-    return first <= last ? first : infinity;
-  }
+  static double entry(const Node& node, const Vector<D>& p, double r, const Vector<D>& u, double limit);
 
   Boundary<D> boundary_;
-  std::vector<Vector<D>> shifts_;
+  std::vector<Vector<D>> shifts_;  // none first, as that is where most is found
   BoxTree<D> tree_;
   std::vector<Vector<D>> centers_;
   std::vector<double> radii_;

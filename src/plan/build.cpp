@@ -16,6 +16,7 @@
 #include "plan/hints.hpp"
 #include "plan/made_plan.hpp"
 #include "plan/price_effects.hpp"
+#include "plan/requirements.hpp"
 #include "plan/room_for_gaps.hpp"
 #include "plan/sizes_at_hand.hpp"
 #include "plan/stages.hpp"
@@ -102,7 +103,6 @@ void expect_in_container(Plan& plan) {
   const Domain& container = plan.domain;
   const bool exact = scene.walls == WallArithmetic::exact;
   std::shared_ptr<const Container> made = plan.container;
-  if (is_faceted(container) && !made) made = container_of(plan);  // what fits into it is asked of it
   // Far from the origin nothing can be told apart, and then nothing fits.
   if (std::holds_alternative<Revolved>(container)) frame_for(scene, container, *plan.radii);
   require_fitting(scene, container, made, plan.radii->min());
@@ -138,64 +138,6 @@ void expect_in_container(Plan& plan) {
   plan.expected_packing_fraction = plan.expected_count * mean_volume / volume;
   if (!scene.target.packing_fraction) plan.expected_count = std::max(1.0, plan.expected_count);  // one fits
   choose_draw(plan, radii);
-}
-
-void require_stage_that_places(const Scene& scene) {
-  if (scene.start.file || any_stage(scene, &StageTraits::only_moves, false)) return;
-  throw Error(ErrorCode::bad_scene,
-              "the stages only move spheres, and none places any: begin with \"insert\" or \"relax\"",
-              scene.stages.front().locations.whole);
-}
-
-/// What is asked of the accuracy has an effect, or is refused.
-void require_effect_of_accuracy(const Scene& scene) {
-  const auto fail = [&](std::string_view key, std::string_view why) {
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("\"{}\" in [accuracy] would be without effect: {}", key, why),
-                scene.locations.of(key));
-  };
-  const auto leaves_overlap = [&](const Stage& stage) {
-    const StageTraits& traits = table_of(stage).traits;
-    return traits.leaves_overlap && !traits.stands_in_bed(scene);
-  };
-  if (scene.overlap > 0 && std::ranges::none_of(scene.stages, leaves_overlap))
-    fail("overlap", "no stage of this scene leaves any overlap; \"relax\" and \"fly\" in periodic boxes can");
-  if (scene.walls != WallArithmetic::filtered && !any_in_bed(scene))
-    fail("walls", "no stage of this scene asks a container about its walls");
-}
-
-/// What is allowed to overlap has to have an effect on some stage, too, as it fills this box.
-void require_overlap(const Plan& plan) {
-  const Scene& scene = plan.scene;
-  if (!(scene.overlap > 0)) return;
-  for (const Stage& stage : scene.stages) {
-    const StageEntry& entry = entry_of(stage);
-    const StageTraits& traits = entry.table.traits;
-    if (!traits.leaves_overlap || traits.stands_in_bed(scene)) continue;
-    if (!entry.leaves_overlap || entry.leaves_overlap(entry.table.options(stage), fill_task_of(plan))) return;
-  }
-  throw Error(ErrorCode::bad_scene,
-              "\"overlap\" in [accuracy] would be without effect: spheres that fly keep none; \"fly\" by "
-              "\"relaxation\" or \"classes\" can, and so can \"relax\"",
-              scene.locations.of("overlap"));
-}
-
-/// Throws where a stage has demands on containers that this one does not meet.
-void require_fit_for_stages(const Plan& plan) {
-  const double rarest = std::min(0.5, 1 / std::max(1.0, plan.expected_count));
-  const double smallest = std::max(plan.radii->min(), plan.radii->quantile(rarest));
-  for (const Stage& stage : plan.scene.stages) {
-    const StageEntry& entry = entry_of(stage);
-    if (!entry.require || !entry.table.traits.stands_in_bed(plan.scene)) continue;
-    try {
-      const Frame frame = frame_of(plan.domain);
-      entry.require(entry.table.options(stage), to_local(plan.domain, frame), smallest / frame.scale,
-                    fill_task_of(plan));
-    } catch (const Error& error) {
-      const Location at = stage.locations.of("direction");  // none of a stage that the scene does not name
-      throw Error(error.code(), error.what(), at.line == 0 ? plan.scene.container.locations.whole : at);
-    }
-  }
 }
 
 /// What a size means that only gives the proportions of a box: each edge over the longest, to 44 bits. So all
@@ -366,7 +308,8 @@ FillTask fill_task_of(const Plan& plan) {
   return task;
 }
 
-Plan made_plan(const Scene& stated) {
+/// As far as is known without expecting anything: what is to fit where.
+static Plan begun_plan(const Scene& stated, const PlaceOfPlan* place = nullptr) {
   Plan plan;
   plan.scene = stated;
   complete(plan.scene);
@@ -374,13 +317,22 @@ Plan made_plan(const Scene& stated) {
   require_stage_that_places(scene);
   require_effect_of_accuracy(scene);
   plan.start = read_start(plan.scene);
-  plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
+  if (place)
+    plan.domain = place->domain, plan.container = place->container;
+  else
+    plan.domain = domain_of(plan.scene, plan.container_notes, plan.caution);
   if (scene.engine) engine::require_engine_fits(scene, plan.domain);
   plan.radii = scene.draws() ? radii_of(scene) : radii_there(plan.start.spheres.r);
   set_height_of_bed(plan);
+  if (scene.asks_for_gaps()) require_gaps(plan);
+  if (is_faceted(plan.domain) && !plan.container)  // what fits into it is asked of it
+    plan.container = container_of(plan);
+  return plan;
+}
+
+static Plan finished(Plan plan) {
+  const Scene& scene = plan.scene;
   if (scene.asks_for_gaps()) {
-    require_gaps(plan);
-    if (is_faceted(plan.domain)) plan.container = container_of(plan);
     expect_with_room(plan);
     if (plan.scene.target.predicted) {  // again from the number that whoever reads it will have
       plan.scene.target.predicted = false;
@@ -395,6 +347,14 @@ Plan made_plan(const Scene& stated) {
   require_images(plan);
   plan.hints = hints_of(plan);
   return plan;
+}
+
+Plan made_plan(const Scene& stated, const PlaceOfPlan* place) { return finished(begun_plan(stated, place)); }
+
+std::optional<Plan> made_plan_where_all_fit(const Scene& stated) {
+  Plan plan = begun_plan(stated);
+  if (!(plan.scene.asks_for_gaps() ? may_fit(plan_with_room(plan)) : may_fit(plan))) return {};
+  return finished(std::move(plan));
 }
 
 }  // namespace bernal

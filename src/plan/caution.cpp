@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
 #include "plan/count_mass.hpp"
 #include "plan/estimate.hpp"
@@ -54,6 +53,15 @@ std::string caution_of_few(const Plan& plan) {
                      remedy_of(*few, plan.expected_count, plan.scene, edges));
 }
 
+/// "; no arrangement of equal spheres that is known has more than 0.7405", where that much is asked for.
+std::string beyond_any(const Plan& plan, double asked) {
+  const int dimension = plan.scene.dimension();
+  const double densest = densest_of_equal(dimension);
+  if (plan.radii->min() != plan.radii->max() || asked <= densest) return {};
+  return fmt::format("; no arrangement of equal {} that is known has more than {:.4f}",
+                     dimension == 2 ? "discs" : "spheres", densest);
+}
+
 /// Of what is asked for beyond what the stages are likely to reach.
 std::string caution_of_target(const Plan& plan) {
   const Scene& scene = plan.scene;
@@ -68,14 +76,27 @@ std::string caution_of_target(const Plan& plan) {
   if (!(asked >
         attainable + within_reach * error_of_expectation(scene, plan.domain, *plan.radii, attainable)))
     return {};
-  std::string text =
-      fmt::format("a packing fraction of {:.3g} is asked for{}, and these sizes are expected to reach {:.3f}",
-                  asked, is_counted ? " by the count" : "", attainable);
-  const bool are_equal = plan.radii->min() == plan.radii->max();
-  if (const double densest = densest_of_equal(dimension); are_equal && asked > densest)
-    text += fmt::format("; no arrangement of equal {} that is known has more than {:.4f}",
-                        dimension == 2 ? "discs" : "spheres", densest);
-  return text;
+  return fmt::format(
+      "a packing fraction of {:.3g} is asked for{}, and these sizes are expected to reach {:.3f}{}", asked,
+      scene.target.mass_counted         ? " by the mass"
+      : is_counted                      ? " by the count"
+      : scene.target.bulk_density_asked ? " by the bulk density"
+                                        : "",
+      attainable, beyond_any(plan, asked));
+}
+
+/// Of a bed that is to be denser than spheres come to lie.
+std::string caution_of_porosity(const Plan& plan) {
+  const Target& target = plan.scene.target;
+  if (!target.bed.porosity) return {};
+  constexpr double error_of_model = 0.01;
+  const double asked = 1 - *target.bed.porosity, closest = close_packing_fraction(*plan.radii, 3);
+  if (!(asked > closest + within_reach * error_of_model)) return {};
+  return fmt::format(
+      "a porosity of {:.3g} is asked for{}, and random close packing of these sizes leaves {:.3f} even far "
+      "from walls{}",
+      *target.bed.porosity, target.bulk_density_asked ? " by the bulk density" : "", 1 - closest,
+      beyond_any(plan, asked));
 }
 
 std::string caution_of_guess(const Plan& plan) {
@@ -113,8 +134,8 @@ std::string caution_of_mass(const Plan& plan) {
 
 std::string caution_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string caution : {caution_of_few(plan), caution_of_target(plan), caution_of_guess(plan),
-                              caution_of_size(plan), caution_of_mass(plan)})
+  for (std::string caution : {caution_of_few(plan), caution_of_target(plan), caution_of_porosity(plan),
+                              caution_of_guess(plan), caution_of_size(plan), caution_of_mass(plan)})
     if (!caution.empty()) all.push_back(std::move(caution));
   return fmt::format("{}", fmt::join(all, "; "));
 }

@@ -12,12 +12,17 @@
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/sizes/size_distribution.hpp"
+#include "cad/diagnose/diagnose_mesh.hpp"
 #include "cad/read/files_of_part.hpp"
 #include "cad/read/known_formats.hpp"
 #include "cad/read/triangulate.hpp"
+#include "cad/repair/obstacles.hpp"
 #include "core/lower_case.hpp"
+#include "domain/flattened.hpp"
+#include "domain/rounded.hpp"
 #include "files/sha256.hpp"
 #include "scene/given_files.hpp"
+#include "scene/scene_entries.hpp"
 
 namespace bernal {
 namespace {
@@ -155,13 +160,23 @@ Mesh prism_of(const Extruded& extruded) {
   return prism;
 }
 
+/// Of a container or an obstacle of the scene.
 struct MakeDomain {
   Scene& scene;
+  const SceneContainer& container;
   std::string& notes;
   std::string& caution;
 
-  Domain operator()(const Box& box) const { return box; }
-  Domain operator()(const Cylinder& cylinder) const { return cylinder; }
+  Domain operator()(const Box& box) const {
+    if (container.rounding == 0) return box;
+    note_rounding(deviation_of_rounded_box);
+    return rounded(box, container.rounding);
+  }
+  Domain operator()(const Cylinder& cylinder) const {
+    if (container.rounding == 0) return cylinder;
+    note_rounding(deviation_of_rounded_cylinder);
+    return rounded(cylinder, container.rounding);
+  }
   Domain operator()(const Sphere& sphere) const { return sphere; }
   Domain operator()(const Polygon& polygon) const { return polygon; }
   Domain operator()(const Cone& cone) const { return solid_of(cone); }
@@ -185,7 +200,7 @@ struct MakeDomain {
       if (imported.report.unit.empty() && !mesh.unit) mesh.unit = unit;
       return std::move(imported.mesh);
     } catch (const OptionError& error) {
-      const Location at = scene.container.locations.of(error.option);
+      const Location at = container.locations.of(error.option);
       throw Error(error.code(), error.what(), at.file.empty() ? Location{mesh.file.string()} : at);
     }
   }
@@ -197,12 +212,59 @@ struct MakeDomain {
     for (const int axis : box.walls) walls.at(static_cast<std::size_t>(axis)) = true;
     return periodic_box(edges, walls);
   }
+
+ private:
+  void note_rounding(double deviation) const {
+    notes = fmt::format("rounded edges are straight pieces on their inner side, off by {:.2g} {} at most",
+                        deviation * container.rounding, name_of(scene.unit));
+  }
 };
+
+/// What remains of the container. Where a note stands, what is done is added to it.
+Domain without_obstacles(const Domain& whole, Scene& scene, std::string& notes, std::string& caution) {
+  const auto add = [](std::string& text, const std::string& more) {
+    if (!more.empty()) text.append(text.empty() ? "" : "; ").append(more);
+  };
+  Flattened walls = flattened(whole, RoundAs::within);
+  double deviation = walls.deviation;
+  int number = 0;
+  for (SceneContainer& solid : scene.container.obstacles) {
+    const auto* file = std::get_if<MeshFile>(&solid);
+    const std::string name = file ? file->file.filename().string()
+                                  : fmt::format("obstacle {}, a {},", ++number, schema::entry_of(solid).name);
+    std::string notes_of_file, caution_of_file;
+    const Flattened obstacle = flattened(
+        std::visit(MakeDomain{scene, solid, notes_of_file, caution_of_file}, solid), RoundAs::circumscribed);
+    try {
+      cad::take_out(walls.mesh, obstacle.mesh, name);
+    } catch (const OptionError& error) {
+      throw Error(error.code(), error.what(), scene.container.locations.of("obstacles"));
+    }
+    deviation = std::max(deviation, obstacle.deviation);
+    add(notes, fmt::format("took out {} of {} faces", name, obstacle.mesh.triangles.size()));
+    if (!caution_of_file.empty()) add(caution, fmt::format("{}: {}", name, caution_of_file));
+  }
+  cad::Triangles rest{.mesh = std::move(walls.mesh)};
+  const MeshReport report = cad::diagnose_mesh(rest);
+  if (!report.usable())
+    throw Error(ErrorCode::bad_mesh,
+                fmt::format("obstacles leave walls that spheres cannot be packed between: {}; move them a "
+                            "little",
+                            fmt::join(report.problems, ", ")),
+                scene.container.locations.of("obstacles"));
+  if (deviation > 0)
+    add(notes, fmt::format("round walls are flat faces on their inner side, off by {:.2g} {} at most",
+                           deviation, name_of(scene.unit)));
+  return std::move(rest.mesh);
+}
 
 }  // namespace
 
 Domain domain_of(Scene& scene, std::string& notes, std::string& caution) {
-  return std::visit(MakeDomain{scene, notes, caution}, scene.container);
+  SceneContainer& container = scene.container;
+  Domain whole = std::visit(MakeDomain{scene, container, notes, caution}, container);
+  if (container.obstacles.empty()) return whole;
+  return without_obstacles(whole, scene, notes, caution);
 }
 
 Domain domain_of(const Scene& scene) {
@@ -220,18 +282,18 @@ Domain packed_domain_of(const Scene& scene) {
         "pack writes beside the spheres does",
         scene.container.locations.whole);
   Scene copy = scene;  // the spheres are certified in the walls as they are now
-  if (auto* mesh = std::get_if<MeshFile>(&copy.container)) mesh->sha256.clear();
+  for (MeshFile* mesh : copy.container.meshes()) mesh->sha256.clear();
   copy.start = {};  // which may have gone
   return domain_of(copy);
 }
 
 std::vector<std::filesystem::path> changed_files(const Scene& scene) {
-  const auto* mesh = std::get_if<MeshFile>(&scene.container);
   std::vector<std::filesystem::path> changed;
-  if (!mesh) return changed;
-  const std::vector<std::filesystem::path> files = files_of(*mesh);
-  for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
-    if (digest_of_part(scene, files[k]) != in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
+  for (const MeshFile* mesh : scene.container.meshes()) {
+    const std::vector<std::filesystem::path> files = files_of(*mesh);
+    for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
+      if (digest_of_part(scene, files[k]) != in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);
+  }
   return changed;
 }
 

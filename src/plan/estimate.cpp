@@ -9,7 +9,6 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/error.hpp"
-#include "bernal/plan/plan.hpp"
 #include "bernal/predict/predict.hpp"
 #include "core/close_packing.hpp"
 #include "domain/places.hpp"

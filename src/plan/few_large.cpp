@@ -7,7 +7,6 @@
 
 #include "bernal/core/text.hpp"
 #include "plan/estimate.hpp"
-#include "plan/stages.hpp"
 #include "sizes/volume_carriers.hpp"
 
 namespace bernal {

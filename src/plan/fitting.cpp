@@ -14,6 +14,7 @@
 #include "bernal/cad/mesh_container.hpp"
 #include "plan/estimate.hpp"
 #include "plan/room_for_gaps.hpp"
+#include "plan/stages.hpp"
 #include "scene/entry.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/bed.hpp"
@@ -55,20 +56,25 @@ struct LargestRadius {
   }
 };
 
+/// Infinite where nothing repeats itself.
+double shortest_period(const Domain& container) {
+  const Boundary<3> boundary = boundary_of<3>(container);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+    if (boundary.repeats(k)) shortest = std::min(shortest, boundary.edges[k]);
+  return shortest;
+}
+
 }  // namespace
 
 void require_long_periods(const Scene& scene, const Domain& container, double radius) {
-  const Boundary<3> boundary = boundary_of<3>(container);
-  for (int k = 0; k < 3; ++k) {
-    const double least = Bed::least_period * 2 * radius;
-    if (!boundary.repeats(k) || boundary.edges[k] >= least) continue;
-    throw Error(
-        ErrorCode::bad_scene,
-        fmt::format("the container repeats itself every {:.6g} {}, in which spheres meet two images of "
-                    "others; for these sizes make that at least {:.6g} {}",
-                    boundary.edges[k], name_of(scene.unit), least, name_of(scene.unit)),
-        scene.container.locations.whole);
-  }
+  const double least = Bed::least_period * 2 * radius, shortest = shortest_period(container);
+  if (shortest >= least) return;
+  throw Error(ErrorCode::bad_scene,
+              fmt::format("the container repeats itself every {:.6g} {}, in which spheres meet two images of "
+                          "others; for these sizes make that at least {:.6g} {}",
+                          shortest, name_of(scene.unit), least, name_of(scene.unit)),
+              scene.container.locations.whole);
 }
 
 double largest_fitting_radius(const Domain& shape) { return std::visit(LargestRadius{}, shape); }
@@ -94,13 +100,26 @@ Largest closely_largest(const Domain& shape, const std::shared_ptr<const Contain
   return radius > largest.known && radius <= largest.bound ? largest_in(shape, made, many_cells) : largest;
 }
 
+/// What tells whether a sphere of that radius may fit, at no more cost than that takes.
+Largest largest_for(const Domain& container, const std::shared_ptr<const Container>& made, double radius) {
+  if (is_faceted(container) && radius > surely_fitting * volume_of(container) / area_of(container))
+    return closely_largest(container, made, radius);
+  return {largest_fitting_radius(container), largest_fitting_radius(container)};
+}
+
 }  // namespace
+
+bool may_fit(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  const double most = plan.radii->max(), radius = std::isfinite(most) ? most : plan.radii->quantile(0.5);
+  const double allowed = has_walls(plan.domain) ? 0 : scene.overlap, least = (1 - allowed) * radius;
+  if (least > largest_for(plan.domain, plan.container, least).bound) return false;
+  return !any_in_bed(scene) || shortest_period(plan.domain) >= Bed::least_period * 2 * radius;
+}
 
 void require_fitting(const Scene& scene, const Domain& container,
                      const std::shared_ptr<const Container>& made, double radius, std::string_view remedy) {
-  Largest largest{largest_fitting_radius(container), largest_fitting_radius(container)};
-  if (is_faceted(container) && radius > surely_fitting * volume_of(container) / area_of(container))
-    largest = closely_largest(container, made, radius);
+  const Largest largest = largest_for(container, made, radius);
   if (radius <= largest.bound) return;
   const double shown = scene.sizes_are_diameters ? 2 : 1;
   const auto [one, many] =

@@ -30,6 +30,11 @@ void require_fitting(const Scene& scene, const Domain& container,
                      const std::shared_ptr<const Container>& made, double radius,
                      std::string_view remedy = "use smaller ones");
 
+/// Whether the largest spheres of a plan may fit into its domain, each by itself, so that neither of these
+/// two refuses them; of sizes without end those of the median. Precondition: domain and radii are made. Cost:
+/// as `require_fitting`.
+bool may_fit(const Plan& plan);
+
 /// Throws Error{bad_argument}: not a single random place was found in it.
 [[noreturn]] void refuse_thin_container();
 

@@ -9,10 +9,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/settle/insert.hpp"
 #include "bernal/sizes/percentiles.hpp"
 #include "plan/estimate.hpp"
+#include "plan/room_for_gaps.hpp"
+#include "scene/porosity.hpp"
 #include "scene/size_kinds.hpp"
 #include "sizes/volume_carriers.hpp"
 
@@ -80,6 +83,16 @@ std::string hint_of_shares(const Plan& plan) {
       fmt::join(by_number, " : "), fmt::join(by_mass, " : "));
 }
 
+/// Of spheres lighter than any solid is.
+std::string hint_of_density(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  const auto* classes = std::get_if<Classes>(&scene.sizes);
+  if (classes && !classes->material_densities.empty())
+    return doubt_of_density("material_densities", std::ranges::max(classes->material_densities));
+  return scene.material_density ? doubt_of_density("material_density", *scene.material_density)
+                                : std::string();
+}
+
 /// Of sizes with a basis, of which the scene's text says none; classes have their own hint, and percentiles
 /// say theirs with their law.
 std::string hint_of_basis(const Plan& plan) {
@@ -128,6 +141,22 @@ std::string hint_of_ends(const Plan& plan) {
       scale * curve.front().size, scale * curve.back().size, name_of(plan.scene.unit));
 }
 
+/// Of a part with places that no sphere reaches. What is narrower than a sphere of radius r has an area of at
+/// least V / r, so that mostly nothing has to be looked at.
+std::string hint_of_narrow_parts(const Plan& plan) {
+  constexpr double worth_telling = 0.1, quantile_of_smallest = 0.01;
+  if (!is_faceted(plan.domain) || plan.scene.dimension() != 3) return {};
+  const double r = std::max(plan.radii->min(), plan.radii->quantile(quantile_of_smallest));
+  if (r * area_of(plan.domain) < worth_telling * volume_of(plan.domain)) return {};
+  const double reached = coverable_share(*local_container(plan.domain, plan.container),
+                                         (r + coat_of(plan.scene)) / frame_of(plan.domain).scale);
+  if (1 - reached < worth_telling) return {};
+  return fmt::format(
+      "about {:.2g} % of the container is too narrow for even the smallest spheres: thin parts, "
+      "edges and corners; smaller ones reach more of it",
+      100 * (1 - reached));
+}
+
 /// Of equal spheres that are to fill a container, where a crystal is likely to hold more.
 std::string hint_of_crystal(const Plan& plan) {
   constexpr double worth_telling = 1.01;
@@ -150,7 +179,8 @@ std::string hint_of_crystal(const Plan& plan) {
 std::vector<std::string> hints_of(const Plan& plan) {
   std::vector<std::string> all;
   for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan),
-                           hint_of_basis(plan), hint_of_pan(plan), hint_of_ends(plan), hint_of_crystal(plan)})
+                           hint_of_density(plan), hint_of_basis(plan), hint_of_pan(plan), hint_of_ends(plan),
+                           hint_of_narrow_parts(plan), hint_of_crystal(plan)})
     if (!hint.empty()) all.push_back(std::move(hint));
   return all;
 }

@@ -1,11 +1,14 @@
 #include "plan/made_plan.hpp"
 
 #include <cmath>
+#include <optional>
 #include <typeinfo>
+#include <utility>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "plan/plan_zones.hpp"
 
 namespace bernal {
 namespace {
@@ -23,24 +26,21 @@ Plan plan_of_largest(const Scene& stated) {
   const double volume = static_cast<double>(*scene.target.count) * ball_volume(dimension, 1) *
                         radii_of(scene)->moment(dimension);
   const double room = volume_of(domain_of(scene));
-  for (double share = first_share;; share /= 2) {
+  std::optional<Plan> plan;
+  for (double share = first_share; !plan && share > least_share; share /= 2) {  // the largest of many sizes
     scene.scale = std::pow(share * room / volume, 1.0 / dimension);
-    try {
-      Plan plan = made_plan(scene);
-      plan.expected_packing_fraction = plan.attainable_packing_fraction;
-      plan.items.push_back(
-          {.name = "search",
-           .what = "the same for larger and larger spheres, and for sizes in between, from several "
-                   "beginnings each, until the largest are known to 1e-4",
-           .cost = "some 100 runs",
-           .seconds = runs * (dear * plan.expected_seconds + least_seconds)});
-      plan.expected_seconds += plan.items.back().seconds;
-      return plan;
-    } catch (
-        const Error&) {  // the largest of many sizes do not fit, or what only looks so is another mistake
-      if (share < least_share) throw;
-    }
+    plan = made_plan_where_all_fit(scene);
   }
+  if (!plan) plan = made_plan(scene);  // which says why they do not fit
+  plan->expected_packing_fraction = plan->attainable_packing_fraction;
+  plan->items.push_back({.name = "search",
+                         .what =
+                             "the same for larger and larger spheres, and for sizes in between, from several "
+                             "beginnings each, until the largest are known to 1e-4",
+                         .cost = "some 100 runs",
+                         .seconds = runs * (dear * plan->expected_seconds + least_seconds)});
+  plan->expected_seconds += plan->items.back().seconds;
+  return std::move(*plan);
 }
 
 }  // namespace
@@ -48,7 +48,9 @@ Plan plan_of_largest(const Scene& stated) {
 Plan build(const Scene& scene) {
   const int dimension = scene.dimension();
   try {
-    Plan plan = scene.largest ? plan_of_largest(scene) : made_plan(scene);
+    Plan plan = !scene.zones.empty() ? plan_of_zones(scene)
+                : scene.largest      ? plan_of_largest(scene)
+                                     : made_plan(scene);
     plan.caution = in_dimension(dimension, plan.caution);
     for (PlanItem& item : plan.items) item.what = in_dimension(dimension, item.what);
     for (std::string& hint : plan.hints) hint = in_dimension(dimension, hint);

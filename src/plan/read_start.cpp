@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -8,7 +7,6 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
-#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"
@@ -165,6 +163,7 @@ std::unique_ptr<SizeDistribution> radii_there(const std::vector<double>& radii) 
 
 SceneRadii asked_radii_of(const Scene& scene, std::size_t count) {
   SceneRadii made;
+  if (!scene.zones.empty()) return made;  // each has sizes of its own
   Scene copy = scene;
   try {
     made.first = read_start(copy).spheres.r;

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <ranges>
 #include <string>
 
 #include "bernal/core/error.hpp"
 #include "bernal/predict/design.hpp"
+#include "core/order.hpp"
 #include "predict/compositions.hpp"
 #include "predict/search.hpp"
 
@@ -132,9 +132,7 @@ Optimum maximise_packing_fraction(std::span<const double> radii, const SearchOpt
           "sizes must be positive and finite");
   require(!radii.empty(), "a composition is searched for of 2 to 6 populations, not of 0");
   // In a fixed order and scale: the largest first.
-  std::vector<std::size_t> order(radii.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return radii[i]; });
+  const std::vector<std::uint32_t> order = largest_first(radii);
   std::vector<double> sizes;
   for (const std::size_t i : order) sizes.push_back(radii[i] / radii[order.front()]);
   predict::require_few_enough(1 / sizes.back(), options.rods);

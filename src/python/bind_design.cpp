@@ -1,7 +1,6 @@
 // Predictions by the rod model, and searches for sizes that pack as asked.
 #include <algorithm>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <pybind11/stl.h>

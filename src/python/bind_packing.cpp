@@ -10,6 +10,7 @@
 #include "bernal/report/picture.hpp"
 #include "bernal/report/section.hpp"
 #include "bernal/scene/packing_bytes.hpp"
+#include "bernal/scene/sphere_classes.hpp"
 #include "bernal/viewer/view_page.hpp"
 #include "python/bindings.hpp"
 #include "python/lock.hpp"
@@ -32,6 +33,17 @@ py::tuple columns_of(const py::object& self) {
   for (const auto& column : packing.spheres.x) views.append(view_of(column, self));
   views.append(view_of(packing.spheres.r, self));
   return py::tuple(views);
+}
+
+/// The class of each sphere, and name, material and density of each class.
+py::tuple classes_of_packing(const Packing& packing) {
+  py::list all;
+  if (!packing.classes.empty())
+    for (const SphereClass& of : classes_of(packing.scene))
+      all.append(py::make_tuple(of.name, of.material, of.material_density));
+  return py::make_tuple(
+      py::array_t<std::uint32_t>(static_cast<py::ssize_t>(packing.classes.size()), packing.classes.data()),
+      all);
 }
 
 py::list history_of(const Packing& packing) {
@@ -125,6 +137,7 @@ void bind_packing(py::module_& module) {
   using OthersRun = py::call_guard<Unlocked>;
   py::class_<Packing, PackingPointer>(module, "Packing")
       .def("columns", &columns_of)
+      .def("classes", &classes_of_packing)
       .def("history", &history_of)
       .def("effects", &effects_of)
       .def("bounds", &bounds_of_domain)

@@ -60,7 +60,7 @@ Surface arrays_of(const PolygonSurface& surface) {
 
 Surfaces surfaces_of(const Scene& scene) {
   Surfaces all;
-  if (const auto* mesh = std::get_if<MeshFile>(&scene.container))
+  for (const MeshFile* mesh : scene.container.meshes())
     for (const auto& [name, surface] : mesh->surfaces) all.emplace(name.string(), arrays_of(*surface));
   return all;
 }
@@ -71,16 +71,13 @@ Scene scene_of_text(const std::string& toml, const std::filesystem::path& name, 
                     const PackingPointer& start) {
   Scene scene = parse_scene(toml, name);
   scene.file.clear();
-  if (auto* mesh = std::get_if<MeshFile>(&scene.container)) {
-    const auto give = [&](std::filesystem::path& file) {
-      const auto given = surfaces.find(file.filename().string());
-      if (given == surfaces.end()) return;
-      file = given->first;
-      mesh->surfaces[file] = surface_of(given->second);
-    };
-    give(mesh->file);
-    std::ranges::for_each(mesh->obstacles, give);
-  }
+  for (MeshFile* mesh : scene.container.meshes())
+    for (std::filesystem::path* file : mesh->files()) {
+      const auto given = surfaces.find(file->filename().string());
+      if (given == surfaces.end()) continue;
+      *file = given->first;
+      mesh->surfaces[*file] = surface_of(given->second);
+    }
   if (start) {
     scene.start.file = scene.start.file->filename();
     scene.start.packing = start;

@@ -35,9 +35,10 @@ Progress = bool | None | Callable[[str, float | None, str], Any]
 FLOATS = "Sequence[float] | NDArray[Any]"
 PAIRS = "Sequence[Sequence[float]] | NDArray[Any]"
 TYPES = {
-    "flag": "bool", "integer": "int", "number": "float", "length": "float", "word": "str", "file": "Any",
+    "flag": "bool", "integer": "int", "number": "float", "length": "float", "word": "str", "file": "Any", "text": "str",
     "names": "Any", "points": PAIRS, "lines": f"Sequence[{PAIRS}]", "axes": "Sequence[int]",
     "distribution": "float | Sizes", "parts": "Sequence[float | Sizes]",
+    "solids": "Any",
 }  # fmt: skip
 SPECIAL = ("__init__", "__len__", "__bool__", "__str__", "__float__", "__getattr__")
 
@@ -115,7 +116,7 @@ def attributes_of(kind: type) -> dict[str, str]:
             key["name"]: f"{type_of(key)} | None" for key in _scene._KEYS.values() if not hasattr(kind, key["name"])
         }
         return {"container": "Container", "diameters": "float | Sizes | None", "radii": "float | Sizes | None",
-                "engine": "Engine | None", "stages": "tuple[Stage, ...]", "outputs": "tuple[Output, ...]", **keys}  # fmt: skip
+                "zones": "tuple[Zone, ...]", "engine": "Engine | None", "stages": "tuple[Stage, ...]", "outputs": "tuple[Output, ...]", **keys}  # fmt: skip
     if issubclass(kind, _classes.Said) and "_table" in vars(kind):
         return {key["name"]: f"{type_of(key)} | None" for key in kind._table["keys"]}
     own = vars(kind).get("__annotations__", {})

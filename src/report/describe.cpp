@@ -7,6 +7,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "bernal/scene/sphere_classes.hpp"
 #include "report/describe.hpp"
 #include "scene/scene_entries.hpp"
 
@@ -34,6 +35,23 @@ std::string describe_output(const Output& output) {
                      name_of(output.unit.value_or(Unit::m)));
 }
 
+/// A line for each zone and for each piece of what lies in none.
+std::string describe_parts(const Plan& plan) {
+  const std::vector<SphereClass> classes = classes_of(plan.scene);
+  std::string text;
+  for (const PlannedPart& part : plan.parts) {
+    const bool is_zone = part.sphere_class < plan.scene.zones.size();
+    const std::string place =
+        is_zone ? fmt::format("{}", fmt::join(plan.scene.zones[part.sphere_class].place, ", "))
+                : std::string();
+    text +=
+        fmt::format("{:<9}  {}{}: {}; {}; about {:.3g} spheres\n", is_zone ? "zone" : "the rest",
+                    classes[part.sphere_class].name, place.empty() ? "" : ", " + place,
+                    describe_target(part.plan), describe_sizes(part.plan.scene), part.plan.expected_count);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string describe(const Plan& plan) {
@@ -43,8 +61,12 @@ std::string describe(const Plan& plan) {
     text += fmt::format("start      {} of {}; \"{}\" begins from {}\n",
                         n == 1 ? "1 sphere" : grouped(n) + " spheres", plain_text(plan.start.file),
                         plan.scene.stages.front().name(), n == 1 ? "it" : "them");
-  text += fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
+  if (plan.parts.empty())
+    text += fmt::format("spheres    {}; {}\n", describe_target(plan), describe_sizes(plan.scene));
+  else
+    text += describe_parts(plan);
   if (!plan.caution.empty()) text += fmt::format("caution    {}\n", plan.caution);
+  for (const std::string& hint : plan.hints) text += fmt::format("note       {}\n", hint);
   if (plan.scene.asks_for_gaps())
     text += fmt::format(
         "gaps       at least {:g} {} between spheres{}\n", plan.scene.gap, name_of(plan.scene.unit),

@@ -86,7 +86,6 @@ std::string explain(const Plan& plan) {
   const Scene& scene = plan.scene;
   std::string text = describe(plan);
   text += summary_in_words(summary_of(scene, *plan.radii), scene);
-  for (const std::string& hint : plan.hints) text += fmt::format("note       {}\n", hint);
   text += fmt::format("accuracy   walls {}, overlap {}\n", name_of(scene.walls), scene.overlap);
   if (const auto& bed = plan.expected_bed)
     text += fmt::format(

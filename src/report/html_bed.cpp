@@ -62,6 +62,11 @@ void write_bed(Page& page, const Report& report) {
                         "bed below {:.4g} {}, without the empty part above; packing fraction and chambers "
                         "are those of the whole container.",
                         *bed->level, unit)
+      : bed->covered < BedProfile::well_covered
+          ? fmt::format(" It covers less than {:g} % of the cross-section and so has no level: porosity over "
+                        "the distance from the wall, pores and g(r) are those of the whole container, air "
+                        "included.",
+                        100 * BedProfile::well_covered)
           : "");
   page.add("<div class=\"pair\"><div>{}</div><div class=\"wide\"><table>\n", bed_chart(*bed, unit));
   page.row("height", fmt::format("{:.4g}", bed->height),

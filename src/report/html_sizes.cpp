@@ -10,6 +10,7 @@
 
 #include "bernal/core/text.hpp"
 #include "report/chart.hpp"
+#include "report/class_amounts.hpp"
 #include "report/page.hpp"
 #include "report/size_summary.hpp"
 #include "scene/size_kinds.hpp"
@@ -192,7 +193,30 @@ void write_comparison(Page& page, const SizeComparison& c, const Sizes& sizes) {
 
 }  // namespace
 
+/// What the scene tells apart: its zones, and what lies in none, or its materials.
+void write_sphere_classes(Page& page, const Packing& packing) {
+  const std::vector<ClassAmount> amounts = class_amounts(packing);
+  if (amounts.size() < 2) return;
+  double solid = 0;
+  for (const ClassAmount& amount : amounts) solid += amount.packing_fraction;
+  const bool has_mass =
+      std::ranges::all_of(amounts, [](const ClassAmount& amount) { return amount.mass.has_value(); });
+  page.add(
+      "<h2>Classes</h2>\n<table><tr><th>class</th><th>material</th><th class=\"n\">spheres</th>"
+      "<th class=\"n\">of the container</th><th class=\"n\">% of the volume of all</th>{}</tr>\n",
+      has_mass ? "<th class=\"n\">mass (kg)</th>" : "");
+  for (const ClassAmount& amount : amounts)
+    page.add(
+        "<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{:.4f}</td><td "
+        "class=\"n\">{:.2f}</td>{}</tr>\n",
+        escaped(amount.of.name), escaped(amount.of.material), grouped(amount.spheres),
+        amount.packing_fraction, solid > 0 ? 100 * amount.packing_fraction / solid : 0.0,
+        has_mass ? fmt::format("<td class=\"n\">{:.4g}</td>", *amount.mass) : "");
+  page.raw("</table>\n");
+}
+
 void write_sizes(Page& page, const Report& report) {
+  write_sphere_classes(page, report.packing);
   const Sizes sizes = sizes_of(report.packing);
   const std::string unit = escaped(name_of(report.packing.scene.unit));
   if (sizes.values.empty()) return;

@@ -3,9 +3,8 @@
 
 #include <sys/resource.h>
 
-#include <optional>
-
 #include "files/seal.hpp"
+#include "report/class_amounts.hpp"
 #include "report/measured_json.hpp"
 #include "report/report.hpp"
 #include "scene/scene_entries.hpp"
@@ -14,6 +13,7 @@ namespace bernal {
 
 BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
+BERNAL_KEYS(Packing::BulkDensity, asked, reached)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
 
 /// An effect that is only counted is timed within another.
@@ -98,6 +98,18 @@ std::uint64_t peak_memory_bytes() {
   return 1024 * static_cast<std::uint64_t>(usage.ru_maxrss);
 }
 
+Json classes_json(const Packing& packing) {
+  Json all = Json::array();
+  for (const ClassAmount& amount : class_amounts(packing))
+    all.push_back({{"name", amount.of.name},
+                   {"material", amount.of.material.empty() ? Json() : Json(amount.of.material)},
+                   {"material_density", amount.of.material_density},
+                   {"spheres", amount.spheres},
+                   {"packing_fraction", amount.packing_fraction},
+                   {"mass", amount.mass}});
+  return all;
+}
+
 Json run_json(const Packing& packing, std::uint64_t spheres, double packing_fraction) {
   const std::optional<double> mass = mass_of(packing, packing_fraction);
   return {{"version", packing.program.version},
@@ -112,9 +124,12 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
           {"unit", name_of(packing.scene.unit)},
           {"phi", packing_fraction},
           {"mass", mass ? Json(*mass) : Json()},
+          {"classes", classes_json(packing)},
+          {"bulk_density", packing.bulk_density},
           {"expected_phi", packing.expected_packing_fraction},
           {"expected_phi_of_sizes", packing.expected_of_sizes},
           {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},
+          {"notes", packing.hints},
           {"size_scale", packing.size_scale}};
 }
 

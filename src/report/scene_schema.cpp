@@ -14,6 +14,7 @@
 #include "bernal/core/vector.hpp"
 #include "bernal/report/json.hpp"
 #include "bernal/scene/scene_reference.hpp"
+#include "scene/scene_entries.hpp"
 
 namespace bernal {
 namespace {
@@ -72,6 +73,7 @@ SceneSchema basic_definitions() {
       {"direction", direction},
       {"push", push},
       {"position", array_of(refers_to("coordinate"), 3, 3)},
+      {"text", {{"type", "string"}, {"pattern", R"(^[^\u0000-\u001f,;"'<>&\\]+$)"}}},
       {"name", {{"anyOf", {file, SceneSchema{{"type", "integer"}}}}}},
       {"names", {{"anyOf", {refers_to("name"), array_of(refers_to("name"), 1)}}}},
       {"corner", array_of(refers_to("coordinate"), 2, 3)},
@@ -84,6 +86,7 @@ SceneSchema basic_definitions() {
       {"shares", array_of(refers_to("positive"), 1)},
       {"amounts", array_of({{"anyOf", {SceneSchema{{"const", 0}}, refers_to("positive")}}}, 1)},
       {"axes", axes},
+      {"solids", {{"anyOf", {refers_to("file"), array_of(refers_to("solid"), 1)}}}},
   };
 }
 
@@ -119,6 +122,8 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
                                                                    : key.type);
   if (const auto text = measured_text(key.quantity); text && key.type == "number")
     value = either(std::move(value), *text);
+  else if (text && key.type == "shares")
+    value = array_of(either(refers_to("positive"), *text), 1);
   if (key.words.empty()) return value;
   const SceneSchema word = one_of_words(key);
   if (key.type == "names") return {{"anyOf", {word, array_of(word, 1)}}};
@@ -238,14 +243,19 @@ std::string scene_schema_as_json() {
         tables[table.name] = schema_of_table(table, "");
     }
   }
-  // Sizes are optional if a start is given.
+  // Sizes are optional if a start is given, or zones.
   SceneSchema& sizes = tables.at("spheres").at("allOf").back();
   sizes.at("anyOf").push_back(
       {{"required", {"start"}}, {"properties", {{"radius", false}, {"diameter", false}}}});
+  definitions["solid"]["anyOf"].push_back(refers_to("file"));
+  for (const KnownWord& kind : schema::kinds_of_solids())
+    definitions["solid"]["anyOf"].push_back(refers_to(fmt::format("container_{}", kind.name)));
   SceneSchema& properties = scene.at("properties");
   properties["container"] = refers_to("container");
   properties["container"]["description"] = "what the spheres lie in";
   properties.update(tables);
+  properties["zone"] = array_of(std::move(properties.at("zone")), 1);
+  properties["zone"]["description"] = "parts of the container with spheres of their own";
   properties["engine"] = refers_to("engine");
   properties["engine"]["description"] = "another program that finds the places the first stage begins with";
   properties["stage"] = array_of(refers_to("stage"), 1);
@@ -257,7 +267,8 @@ std::string scene_schema_as_json() {
                       {"description", "What is packed into what, and how."}};
   scene.erase("description");
   made.update(scene);
-  made["required"] = {"container", "spheres"};
+  made["required"] = {"container"};
+  made["anyOf"] = {SceneSchema{{"required", {"spheres"}}}, SceneSchema{{"required", {"zone"}}}};
   made["if"] = {{"properties", {{"container", {{"properties", {{"kind", {{"const", "mesh"}}}}}}}}}};
   made["then"] = {{"required", {"unit"}}};
   made["$defs"] = definitions;

@@ -12,6 +12,7 @@
 #include "report/page.hpp"
 #include "report/report.hpp"
 #include "report/report_style.hpp"
+#include "scene/scene_entries.hpp"
 #include "viewer/html.hpp"
 #include "viewer/viewer_files.hpp"
 #include "viewer/viewer_parts.hpp"
@@ -109,6 +110,15 @@ void write_amount(Page& page, const Packing& packing) {
   if (const auto mass = mass_of(packing, packing.packing_fraction()))
     page.add("<p>The spheres weigh {:.6g} kg, of {:.6g} kg/m³ each.</p>\n", *mass,
              *packing.scene.material_density);
+  if (const auto& bulk = packing.bulk_density)
+    page.add("<p>Bulk density: {:.6g} kg/m³ asked, {:.6g} reached.</p>\n", bulk->asked, bulk->reached);
+}
+
+/// What explain said before the run.
+void write_remarks(Page& page, const Packing& packing) {
+  if (!packing.caution.empty())
+    page.add("<p class=\"statement short\"><b>Caution:</b> {}.</p>\n", escaped(packing.caution));
+  for (const std::string& hint : packing.hints) page.add("<p class=\"dim\">Note: {}.</p>\n", escaped(hint));
 }
 
 void write_scene(Page& page, const Report& report, std::string_view scene) {
@@ -127,6 +137,7 @@ void write_scene(Page& page, const Report& report, std::string_view scene) {
     page.add(", with {} triangles", grouped(mesh->triangles.size()));
   page.add(". Seed {}. Every length is in {}.</p>\n", packing.seed, unit);
   write_amount(page, packing);
+  write_remarks(page, packing);
   page.add(
       "<details><summary>The scene as it was run, with every default written out</summary><pre>{}</pre>"
       "</details>\n",
@@ -236,8 +247,12 @@ void write_certificate(Page& page, const Report& report) {
 
 std::string html_of(const Report& report, const Pictures& pictures, std::string_view scene) {
   const Packing& packing = report.packing;
-  std::string title = fmt::format("{} sphere{} in a {}", grouped(packing.spheres.size()),
-                                  packing.spheres.size() == 1 ? "" : "s", name_of(packing.domain));
+  const SceneContainer& container = packing.scene.container;
+  std::string title = fmt::format(
+      "{} sphere{} in a {}", grouped(packing.spheres.size()), packing.spheres.size() == 1 ? "" : "s",
+      container.obstacles.empty()
+          ? name_of(packing.domain)
+          : fmt::format("{} with obstacles", schema::word_of(container, packing.domain)));
   if (const auto* mesh = std::get_if<MeshFile>(&packing.scene.container))
     title += ", " + plain_text(mesh->file.filename().string());
   Page page;

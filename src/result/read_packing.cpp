@@ -1,9 +1,15 @@
 #include "bernal/result/read_packing.hpp"
 
+#include <algorithm>
+#include <span>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
+#include "bernal/scene/sphere_classes.hpp"
+#include "files/npy_file.hpp"
 #include "files/put_in_place.hpp"
 #include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
@@ -15,7 +21,7 @@ namespace bernal {
 namespace {
 
 /// Throws where spheres and scene do not go together.
-Spheres<dynamic> of_the_scene(const Scene& scene, const std::filesystem::path& file, SpheresFile read) {
+SpheresFile of_the_scene(const Scene& scene, const std::filesystem::path& file, SpheresFile read) {
   if (!read.unit.empty() && read.unit != name_of(scene.unit))
     throw Error(ErrorCode::bad_packing,
                 fmt::format("the spheres are in {}, but the scene is in {}; both must have one unit",
@@ -28,7 +34,34 @@ Spheres<dynamic> of_the_scene(const Scene& scene, const std::filesystem::path& f
                     "of another packing?",
                     read.spheres.dimension(), read.spheres.dimension() == 1 ? "" : "s", scene.dimension()),
         {file.string()});
-  return std::move(read).spheres;
+  return read;
+}
+
+/// The numbers of the classes beside an array of spheres, as names by which the scene knows them.
+void add_classes(const Scene& scene, const std::filesystem::path& folder, SpheresFile& read) {
+  const std::filesystem::path file = where_it_stands(folder / classes_as_array);
+  std::error_code unknown;
+  const std::vector<SphereClass> known = classes_of(scene);
+  if (known.empty() || !std::filesystem::exists(file, unknown)) return;
+  NpyFile list(file, {}, NpyFile::Takes::any_numbers);
+  if (!list.is_list() || list.rows() != read.spheres.size())
+    list.fail("does not have the class of every sphere");
+  for (const SphereClass& of : known) read.class_names.push_back(of.name);
+  list.read([&](std::size_t, std::size_t first, std::span<const double> values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!(values[i] >= 0 && values[i] < static_cast<double>(known.size())))
+        list.fail_at(first + i, fmt::format("the scene has no class {}", values[i]));
+      read.classes.push_back(static_cast<std::uint32_t>(values[i]));
+    }
+  });
+}
+
+SpheresFile spheres_in(const Scene& scene, const std::filesystem::path& folder) {
+  const std::filesystem::path file = where_it_stands(only_spheres_file_in(folder));
+  if (file.filename() != spheres_as_array) return of_the_scene(scene, file, read_csv(file));
+  SpheresFile read = of_the_scene(scene, file, {read_npy_spheres(file), {}});
+  add_classes(scene, folder, read);
+  return read;
 }
 
 }  // namespace
@@ -36,12 +69,12 @@ Spheres<dynamic> of_the_scene(const Scene& scene, const std::filesystem::path& f
 bool is_unpublished(const std::filesystem::path& folder) { return is_begun(FolderTree(folder)); }
 
 Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& file) {
-  return of_the_scene(scene, file, read_csv(file));
+  return of_the_scene(scene, file, read_csv(file)).spheres;
 }
 
 Spheres<dynamic> read_columns_of(const Scene& scene, const std::filesystem::path& file) {
   NamedColumns read = read_spheres(file);
-  return of_the_scene(scene, file, {std::move(read.spheres), std::move(read.unit)});
+  return of_the_scene(scene, file, {std::move(read.spheres), std::move(read.unit)}).spheres;
 }
 
 std::filesystem::path spheres_of_result(const std::filesystem::path& folder) {
@@ -51,9 +84,23 @@ std::filesystem::path spheres_of_result(const std::filesystem::path& folder) {
 Scene scene_of_result(const std::filesystem::path& folder) { return scene_in(folder); }
 
 Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder) {
-  const std::filesystem::path file = where_it_stands(only_spheres_file_in(folder));
-  if (file.filename() == spheres_as_array) return of_the_scene(scene, file, {read_npy_spheres(file), {}});
-  return read_csv_of(scene, file);
+  return spheres_in(scene, folder).spheres;
+}
+
+std::vector<std::uint32_t> classes_in(const Scene& scene, const SpheresFile& file) {
+  const std::vector<SphereClass> known = classes_of(scene);
+  if (file.class_names.empty() || known.empty()) return {};
+  std::vector<std::uint32_t> number_of;
+  for (const std::string& name : file.class_names) {
+    const auto found = std::ranges::find(known, name, &SphereClass::name);
+    if (found == known.end())
+      throw Error(ErrorCode::bad_packing,
+                  fmt::format("there are spheres of a class \"{}\", which the scene does not have", name));
+    number_of.push_back(static_cast<std::uint32_t>(found - known.begin()));
+  }
+  std::vector<std::uint32_t> classes = file.classes;
+  for (std::uint32_t& of : classes) of = number_of[of];
+  return classes;
 }
 
 Packing read_packing(const std::filesystem::path& folder) {
@@ -64,7 +111,9 @@ Packing read_packing(const std::filesystem::path& folder) {
   }
   Packing packing;
   packing.scene = scene_in(folder);
-  packing.spheres = read_spheres_of(packing.scene, folder);  // before another result replaces both
+  SpheresFile read = spheres_in(packing.scene, folder);  // before another result replaces both
+  packing.classes = classes_in(packing.scene, read);
+  packing.spheres = std::move(read.spheres);
   packing.domain = packed_domain_of(packing.scene);
   packing.volume = volume_of(packing.domain);
   packing.seed = packing.scene.seed;

@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "cad/read/files_of_part.hpp"
-#include "cad/read/known_formats.hpp"
 #include "files/bytes_of_file.hpp"
 #include "files/sha256.hpp"
 #include "report/report.hpp"
@@ -50,7 +47,9 @@ bool stands_in(const fs::path& file, const fs::path& folder) {
 bool is_as_written(const fs::path& scene) {
   if (!is_regular(scene)) return false;
   try {
-    return scene_as_toml(read_scene(scene), scene.parent_path()) == bytes_of_file(scene);
+    Scene written = read_scene(scene);
+    put_long_lists_beside(written);
+    return scene_as_toml(written, scene.parent_path()) == bytes_of_file(scene);
   } catch (const Error&) {
     return false;
   }
@@ -62,9 +61,12 @@ struct NamedFile {
   std::string sha256;
 };
 std::vector<NamedFile> files_and_digests(Scene& scene) {
-  const auto* mesh = std::get_if<MeshFile>(&scene.container);
-  std::vector<std::string> digests = mesh ? mesh->sha256 : std::vector<std::string>();
-  digests.resize(mesh ? 1 + mesh->obstacles.size() : 0);
+  std::vector<std::string> digests;
+  for (const MeshFile* mesh : scene.container.meshes()) {
+    const std::size_t files = digests.size() + 1 + mesh->obstacles.size();
+    digests.insert(digests.end(), mesh->sha256.begin(), mesh->sha256.end());
+    digests.resize(files);
+  }
   if (scene.start.file)
     digests.push_back(scene.start.sha256.empty() ? std::string() : scene.start.sha256.front());
   std::vector<NamedFile> files;

@@ -1,6 +1,5 @@
 #include "bernal/result/write_contacts.hpp"
 
-#include <array>
 #include <charconv>
 #include <string>
 #include <vector>

@@ -12,6 +12,7 @@ namespace bernal {
 
 bool walls_are_made(const Scene& scene) {
   const auto* file = std::get_if<MeshFile>(&scene.container);
+  if (!scene.container.obstacles.empty()) return true;
   return file && (!file->solids.empty() || !file->obstacles.empty() || !file->repair.empty() ||
                   !file->cap.empty() || file->fill_level || file->deflection ||
                   file->interior != std::variant<Interior, Vector<3>>(Interior::solid));
@@ -26,12 +27,14 @@ std::string as_off_file(const Mesh& mesh) {
 }
 
 std::string certified_walls(const Scene& scene) {
-  const auto* file = std::get_if<MeshFile>(&scene.container);
-  if (!file) return {};
   std::string text;
   for (const std::filesystem::path& changed : changed_files(scene))
     text += fmt::format(" {} has changed since it was packed into; the walls are those that it holds now.",
                         plain_text(changed.string()));
+  if (!scene.container.obstacles.empty())
+    text += " The walls are those of container.off, what obstacles leave of the container.";
+  const auto* file = std::get_if<MeshFile>(&scene.container);
+  if (!file) return text;
   if (!file->repair.empty()) text += " The walls are those of the repaired surface, not of the file's.";
   if (file->deflection)
     text += fmt::format(

@@ -1,16 +1,12 @@
 #include "bernal/result/write_packing.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "bernal/core/error.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/section.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "core/parallel.hpp"
 #include "files/output_file.hpp"
@@ -45,7 +41,7 @@ bool writes_array(const Packing& packing, const WriteOptions& options) {
 /// Certifies what stands in the file: that is what stands in memory, to the bit.
 Certificate certify_written(const std::filesystem::path& file, const Packing& packing,
                             const WriteOptions& options) {
-  require_written(file, packing.spheres, name_of(packing.scene.unit), writes_array(packing, options));
+  require_written(file, packing, writes_array(packing, options));
   return certify(packing.spheres, packing.domain,
                  {.allowed_overlap = packing.scene.overlap,
                   .gap = packing.scene.gap,
@@ -88,7 +84,9 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   StagedFolder staged(folder);
   const bool as_array = writes_array(packing, options);
   const std::filesystem::path spheres = staged.add(spheres_file_of(packing, options));
-  write_spheres(spheres, packing.spheres, name_of(packing.scene.unit), as_array);
+  write_spheres(spheres, packing, as_array);
+  if (as_array && !packing.classes.empty())
+    staged.write(std::string(classes_as_array), classes_as_npy(packing.classes));
   const std::filesystem::path vtp = as_array ? std::filesystem::path() : staged.add("spheres.vtp");
   Certificate certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);
@@ -114,7 +112,8 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   go_on();
   if (!as_array) {
     OutputFile file(vtp);
-    write_vtp(file, packing.spheres, name_of(packing.scene.unit), measured.of_contacts.coordination);
+    write_vtp(file, packing.spheres, name_of(packing.scene.unit), measured.of_contacts.coordination,
+              packing.classes);
     file.close();
   }
   Manifest manifest;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
-#include <string>
 
 #include "bernal/core/error.hpp"
 #include "bernal/result/read_packing.hpp"
@@ -51,9 +50,12 @@ bool holds_array(const std::filesystem::path& file, const Spheres<dynamic>& sphe
   return same;
 }
 
-bool holds_text(const std::filesystem::path& file, const Spheres<dynamic>& spheres, std::string_view unit) {
+bool holds_text(const std::filesystem::path& file, const Packing& packing) {
   const SpheresFile written = read_csv(file);
-  bool same = written.unit == unit && written.spheres.dimension() == spheres.dimension();
+  const Spheres<dynamic>& spheres = packing.spheres;
+  bool same = written.unit == name_of(packing.scene.unit) &&
+              written.spheres.dimension() == spheres.dimension() &&
+              classes_in(packing.scene, written) == packing.classes;
   for (std::size_t k = 0; same && k <= spheres.x.size(); ++k)
     same = same_bits(column(written.spheres, k), column(spheres, k));
   return same;
@@ -61,16 +63,21 @@ bool holds_text(const std::filesystem::path& file, const Spheres<dynamic>& spher
 
 }  // namespace
 
-void write_spheres(const std::filesystem::path& file, const Spheres<dynamic>& spheres, std::string_view unit,
-                   bool as_array) {
+void write_spheres(const std::filesystem::path& file, const Packing& packing, bool as_array) {
   OutputFile out(file);
-  as_array ? write_array(out, spheres) : write_csv(out, spheres, unit);
+  as_array ? write_array(out, packing.spheres) : write_csv(out, packing);
   out.close();
 }
 
-void require_written(const std::filesystem::path& file, const Spheres<dynamic>& spheres,
-                     std::string_view unit, bool as_array) {
-  if (!(as_array ? holds_array(file, spheres) : holds_text(file, spheres, unit)))
+std::string classes_as_npy(const std::vector<std::uint32_t>& classes) {
+  std::string bytes = npy_header(classes.size(), 0);
+  const std::vector<double> values(classes.begin(), classes.end());
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+  return bytes;
+}
+
+void require_written(const std::filesystem::path& file, const Packing& packing, bool as_array) {
+  if (!(as_array ? holds_array(file, packing.spheres) : holds_text(file, packing)))
     throw Error(ErrorCode::cannot_write, "reads back differently from what was written", {file.string()});
 }
 

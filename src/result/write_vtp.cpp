@@ -1,7 +1,6 @@
 #include "result/write_vtp.hpp"
 
 #include <bit>
-#include <cstdint>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -70,13 +69,14 @@ void append_in_space(OutputFile& file, std::size_t dimension, const Component& c
 }  // namespace
 
 void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres, std::string_view unit,
-               std::span<const std::uint32_t> coordination) {
+               std::span<const std::uint32_t> coordination, std::span<const std::uint32_t> classes) {
   const std::uint64_t n = spheres.size();
   const std::size_t dimension = spheres.x.size();
   AppendedData data;
   std::string point_data = data.tag("Float64", "radius", n);
   point_data += data.tag("Int64", "id", n);
   if (!coordination.empty()) point_data += data.tag("Int64", "coordination", n);
+  if (!classes.empty()) point_data += data.tag("Int64", "class", n);
   for (std::size_t k = 3; k < dimension; ++k) point_data += data.tag("Float64", fmt::format("x{}", k), n);
   const std::string points = data.tag("Float64", "Points", n, 3);
   const std::string connectivity = data.tag("Int64", "connectivity", n),
@@ -97,9 +97,10 @@ void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres, std::string_vi
   file.append(appended_begin);
   append_column(file, spheres.r);
   append_counted(file, n, 0);
-  if (!coordination.empty()) {
+  for (const auto& numbers : {coordination, classes}) {
+    if (numbers.empty()) continue;
     append_raw(file, 8 * n);
-    for (const std::uint32_t contacts : coordination) append_raw(file, std::uint64_t{contacts});
+    for (const std::uint32_t number : numbers) append_raw(file, std::uint64_t{number});
   }
   for (std::size_t k = 3; k < dimension; ++k) append_column(file, spheres.x[k]);
   append_raw(file, 24 * n);

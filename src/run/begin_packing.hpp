@@ -13,6 +13,7 @@ inline Packing begin_packing(const Plan& plan, std::optional<std::uint64_t> seed
   Packing packing;
   packing.expected_packing_fraction = plan.expected_packing_fraction;
   packing.caution = plan.caution;
+  packing.hints = plan.hints;
   packing.scene = plan.scene;
   packing.seed = seed.value_or(plan.scene.seed);
   packing.scene.seed = packing.seed;

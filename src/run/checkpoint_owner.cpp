@@ -19,10 +19,9 @@ CheckpointOwner checkpoint_owner(const Scene& scene, std::uint64_t seed) {
     for (const std::string& digest : digests) owner.files += digest + "\n";
     digests.clear();
   };
-  if (auto* mesh = std::get_if<MeshFile>(&bare.container)) {
+  for (MeshFile* mesh : bare.container.meshes()) {
     note(mesh->sha256);
-    mesh->file = mesh->file.filename();
-    for (std::filesystem::path& file : mesh->obstacles) file = file.filename();
+    for (std::filesystem::path* file : mesh->files()) *file = file->filename();
   }
   if (bare.start.file) {
     note(bare.start.sha256);

@@ -185,6 +185,19 @@ void tell_rest(Conclusion& conclusion, const Packing& packing, const Pressing& p
   conclusion.reason += fmt::format("; {}: {}", what, pressed.remedy);
 }
 
+/// What is there of a bulk density that the scene asks for: by the porosity of the bed that a stage laid, or
+/// where none did by the packing fraction.
+void tell_bulk_density(Packing& packing, const Reporter& report) {
+  const Scene& scene = packing.scene;
+  if (!scene.target.bulk_density_asked || !scene.material_density) return;
+  const bool of_bed = scene.target.bed.porosity.has_value();
+  if (of_bed && !report.bed_porosity) return;
+  const double solid = of_bed ? 1 - *report.bed_porosity : packing.packing_fraction();
+  packing.bulk_density = {*scene.target.bulk_density_asked, solid * *scene.material_density};
+  packing.reason += fmt::format("; the bulk density is {:.5g} kg/m3, and {:.5g} was asked for",
+                                packing.bulk_density->reached, packing.bulk_density->asked);
+}
+
 std::string resized(double size_scale) {
   return size_scale == 1
              ? ""
@@ -254,6 +267,7 @@ void conclude(Packing& packing, const SpheresOfRun& spheres, const Reporter& rep
       conclusion.reason + (in_bed && !report.account.empty() ? "; " + report.account : std::string()) +
       (in_bed ? resized(packing.size_scale) : std::string()) +
       (in_bed && end != StageEnd::cancelled ? left_out(packing, supply, ending.unit) : std::string());
+  if (!packing.spheres.empty()) tell_bulk_density(packing, report);
 }
 
 }  // namespace bernal

@@ -12,6 +12,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/scene/sphere_classes.hpp"
 #include "core/parallel.hpp"
 #include "plan/estimate.hpp"
 #include "plan/fitting.hpp"
@@ -26,6 +27,7 @@
 #include "run/run_largest.hpp"
 #include "run/run_record.hpp"
 #include "run/run_stages.hpp"
+#include "run/run_zones.hpp"
 #include "run/take_coats_off.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/counted_container.hpp"
@@ -357,6 +359,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
                 "\"slabs\" out to have them all",
                 plan.scene.engine->locations.of("slabs"));
   if (plan.scene.largest) return run_largest(plan, options);
+  if (!plan.parts.empty()) return run_zones(plan, options);
   Packing packing = begin_packing(plan, options.seed, options.threads);
   packing.domain = plan.domain;
   packing.container = plan.container;
@@ -364,6 +367,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
   Run(plan, options, packing).go();
+  packing.classes = classes_by_size(packing);
   return packing;
 }
 

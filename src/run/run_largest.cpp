@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "plan/made_plan.hpp"
 
 namespace bernal {
 namespace {
@@ -51,6 +52,8 @@ class Search {
     Packing packing = std::move(*best_);
     packing.outcome = stopped_ ? Outcome::cancelled : Outcome::converged;
     packing.reason = in_words(packing);
+    packing.caution = plan_.caution;  // those of the last of its runs are of a size that nobody asked for
+    packing.hints = plan_.hints;
     packing.effects.push_back({"search", runs_, watch_.seconds()});
     packing.seconds = watch_.seconds();
     return packing;
@@ -95,12 +98,8 @@ class Search {
   /// Whether one of so many seeds places all spheres; keeps its packing.
   bool fits(double scale, int tries) {
     tell(scale, tries);
-    std::optional<Plan> plan;
-    try {
-      plan.emplace(build(scene_at(scale)));
-    } catch (const Error&) {  // too large for the container by themselves
-      return false;
-    }
+    const std::optional<Plan> plan = made_plan_where_all_fit(scene_at(scale));
+    if (!plan) return false;
     for (int n = 0; n < tries && !stopped_; ++n) {
       // First the one that placed the largest so far: it is likely to place larger ones.
       const int seed = n == 0 ? winner_ : n <= winner_ ? n - 1 : n;

@@ -12,7 +12,6 @@
 #include "bernal/plan/plan.hpp"
 #include "engine/engine_plan.hpp"
 #include "engine/run_engine.hpp"
-#include "plan/stages.hpp"
 #include "plan/start.hpp"
 #include "run/engine_box.hpp"
 #include "settle/insert.hpp"

@@ -93,6 +93,16 @@ bool is_file(const Value& value) {
   const auto* text = std::get_if<std::string>(&value);
   return text && !text->empty() && text->find('\0') == std::string::npos;
 }
+/// A name that may stand in a table of commas, in a file of XML and in a script.
+bool is_plain_name(const Value& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  const auto is_plain = [](char c) {
+    return static_cast<unsigned char>(c) >= ' ' && c != 0x7f &&
+           std::string_view(",;\"'<>&\\").find(c) == std::string_view::npos;
+  };
+  return text && !text->empty() && text->front() != ' ' && text->back() != ' ' &&
+         std::ranges::all_of(*text, is_plain);
+}
 /// Which are checked by themselves.
 bool are_sizes(const Value& value) { return std::holds_alternative<std::vector<SceneSizes>>(value); }
 
@@ -103,7 +113,7 @@ struct Rule {
   bool has_length = true;
 };
 /// Lengths of which some may be 0.
-const Rule lengths_from_zero = {"an array of lengths of at least 0", all<is_amount>};
+const Rule lengths_not_negative = {"an array of lengths of at least 0", all<is_amount>};
 const std::map<Type, Rule> rules = {
     {Type::length,
      {"a positive length",
@@ -113,6 +123,7 @@ const std::map<Type, Rule> rules = {
     {Type::push,
      {"a direction [x, y, z], in two dimensions [x, y]", is_direction<two_or_three<is_coordinate>>}},
     {Type::position, {"a point [x, y, z]", all<is_coordinate, 3>}},
+    {Type::text, {"a name without commas, quotes and brackets", is_plain_name, false}},
     {Type::names, {"a name or an array of names", are_names, false}},
     {Type::corner, {"a point [x, y, z], in two dimensions [x, y]", two_or_three<is_coordinate>}},
     {Type::extents, {"two or three positive lengths [a, b, c]", two_or_three<is_length>}},
@@ -125,10 +136,11 @@ const std::map<Type, Rule> rules = {
     {Type::axes, {"an array of axes, counted from 0, each once", are_axes, false}},
     {Type::distribution, {"a positive length or a table { distribution = … }", are_sizes}},
     {Type::parts, {"an array of lengths and tables { distribution = … }", are_sizes, false}},
+    {Type::solids, {"an array of files and of tables { kind = … }", is_file, false}},
 };
 
 const Rule& rule_of(const Key& key) {
-  return key.type == Type::lengths && key.range.min == 0 ? lengths_from_zero : rules.at(key.type);
+  return key.type == Type::lengths && key.range.min == 0 ? lengths_not_negative : rules.at(key.type);
 }
 
 }  // namespace

@@ -8,45 +8,22 @@
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "scene/complete_sizes.hpp"
+#include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/zones.hpp"
 
 namespace bernal {
 namespace {
 
+using schema::check;
 using schema::Entry;
 using schema::Key;
 using schema::Section;
 using schema::Type;
-
-/// Every value of the struct is one that a scene can say.
-void check(const Entry& entry, const void* options, const Section& section, bool in_bed = true) {
-  const auto absent = entry.left_out(options, section);
-  for (const Key& key : entry.keys) {
-    const auto value = key.of(options);
-    if (!key.acts_here(in_bed)) {
-      const auto otherwise = key.of(entry.defaults.get());
-      const bool said = value && !(otherwise && toml_text(*value) == toml_text(*otherwise));
-      if (said || section.locations.keys.contains(key.name))
-        section.fail(key.name,
-                     fmt::format("\"{}\" in {} acts in {} only; leave it out", key.name, section.name,
-                                 in_bed ? "periodic boxes" : "containers with walls"));
-      continue;
-    }
-    const auto& [whole, keys] = section.locations;
-    const bool missing = key.of(entry.defaults.get()) ? whole.line > 0 && !keys.contains(key.name) : !value;
-    if (missing && key.required && key.member.get && std::ranges::find(absent, key.name) == absent.end())
-      section.fail("", fmt::format("missing \"{}\" in {}: {}, {}", key.name, section.name,
-                                   schema::expectation(key), key.help));
-    if (value && !schema::accepts(key, *value))
-      section.refuse(key.name, fmt::format("must be {}, not {}", schema::expectation(key, value),
-                                           toml_text(*value).substr(0, 100)));
-  }
-  if (entry.rule) entry.rule(options, section);
-}
 
 void check_sizes(const SceneSizes& sizes, const std::string& name, const Scene& scene) {
   const Entry& entry = schema::entry_of(sizes);
@@ -330,6 +307,27 @@ bool StageTraits::works_in(const Scene& scene) const {
   return in_box && (box_between_walls || box.walls.empty());
 }
 
+/// Of an obstacle, or of a container what it has in common with these.
+static void check_solid(const SceneContainer& solid, const std::string& name, bool is_obstacle) {
+  const Section section{name, solid.locations};
+  const Entry& entry = schema::entry_of(solid);
+  const auto* box = std::get_if<Box>(&solid);
+  const auto* cylinder = std::get_if<Cylinder>(&solid);
+  const bool is_bounded = (!box || box->dimension() == 3) && (!cylinder || !cylinder->periodic);
+  if ((is_obstacle || !solid.obstacles.empty()) && !(is_bounded && entry.find("obstacles")))
+    section.fail("obstacles", name + ": what has obstacles, or is one, has three dimensions and no periods");
+  if (is_obstacle) check(entry, schema::options_of(solid), section);
+  if (solid.rounding == 0) return;
+  if (is_obstacle || !is_bounded || !entry.find("rounding"))
+    section.refuse("rounding",
+                   "is for boxes of three dimensions and cylinders without periods; leave it out");
+  const double most = box ? 0.5 * box->size.minCoeff() : std::min(cylinder->radius, 0.5 * cylinder->height);
+  if (!(solid.rounding > 0 && solid.rounding <= most))
+    section.refuse("rounding", fmt::format("must be above 0 and at most {}, with which nothing straight is "
+                                           "left of an edge, not {}",
+                                           most, solid.rounding));
+}
+
 void complete(Scene& scene) {
   complete_density(scene);
   for (const Entry* entry : schema::own_entries())
@@ -339,13 +337,18 @@ void complete(Scene& scene) {
   const Section section{"[container]", scene.container.locations};
   check(container, schema::options_of(std::as_const(scene.container)), section);
   if (container.complete) container.complete(schema::options_of(scene.container), scene, section);
+  for (std::size_t k = 0; k < scene.container.obstacles.size(); ++k)
+    check_solid(scene.container.obstacles[k], fmt::format("solid {} of obstacles of [container]", k + 1),
+                true);
+  check_solid(scene.container, "[container]", false);
   take_porosity(scene);
   complete_list(scene);
   check_target(scene);
-  if (!is_start_alone(scene))
+  if (!is_start_alone(scene) && (scene.draws() || scene.zones.empty()))
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
                 scene);
   complete_stages(scene);
+  complete_zones(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});
@@ -362,13 +365,10 @@ const StageTable& table_of(const Stage& stage) {
 std::string_view Stage::name() const { return table_of(*this).name(); }
 
 Stage stage_named(std::string_view name) {
-  std::vector<std::string_view> names;
-  for (const StageTable* table : stage_tables()) {
+  for (const StageTable* table : stage_tables())
     if (table->name() == name) return table->make();
-    names.push_back(table->name());
-  }
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("unknown stage {}{}", toml_string(name), remedy(name, names)));
+  throw Error(ErrorCode::bad_argument, fmt::format("unknown stage {}{}", toml_string(name),
+                                                   remedy_of_word(name, known_words_in(stage_tables()))));
 }
 
 }  // namespace bernal

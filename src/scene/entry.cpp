@@ -79,6 +79,31 @@ std::vector<Key> joined(std::vector<Key> keys, std::vector<Key> others) {
   return keys;
 }
 
+void check(const Entry& entry, const void* options, const Section& section, bool in_bed) {
+  const auto absent = entry.left_out(options, section);
+  for (const Key& key : entry.keys) {
+    const auto value = key.of(options);
+    if (!key.acts_here(in_bed)) {
+      const auto otherwise = key.of(entry.defaults.get());
+      const bool said = value && !(otherwise && toml_text(*value) == toml_text(*otherwise));
+      if (said || section.locations.keys.contains(key.name))
+        section.fail(key.name,
+                     fmt::format("\"{}\" in {} acts in {} only; leave it out", key.name, section.name,
+                                 in_bed ? "periodic boxes" : "containers with walls"));
+      continue;
+    }
+    const auto& [whole, keys] = section.locations;
+    const bool missing = key.of(entry.defaults.get()) ? whole.line > 0 && !keys.contains(key.name) : !value;
+    if (missing && key.required && key.member.get && std::ranges::find(absent, key.name) == absent.end())
+      section.fail("", fmt::format("missing \"{}\" in {}: {}, {}", key.name, section.name, expectation(key),
+                                   key.help));
+    if (value && !accepts(key, *value))
+      section.refuse(key.name, fmt::format("must be {}, not {}", expectation(key, value),
+                                           toml_text(*value).substr(0, 100)));
+  }
+  if (entry.rule) entry.rule(options, section);
+}
+
 void Section::refuse(std::string_view key, std::string_view must) const {
   fail(key, fmt::format("\"{}\" in {} {}", key, name, must));
 }

@@ -34,6 +34,7 @@ enum class Type {
   direction,     ///< [x, y, z], not all zero
   push,          ///< the same, or [x, y]: as many components as the scene has dimensions
   position,      ///< [x, y, z] in the scene's unit; or one of Key::words, if there are any
+  text,          ///< a name in quotes, without control characters, commas and quotes
   names,         ///< array of strings, or one: each one of Key::words, if there are any
   corner,        ///< [x, y, z] or [x, y] in the scene's unit
   extents,       ///< [a, b, c] or [a, b], each a length
@@ -46,6 +47,7 @@ enum class Type {
   axes,          ///< array of axes, counted from 0, each once
   distribution,  ///< a length, or a table of one of the distributions
   parts,         ///< array of distributions
+  solids,        ///< array of files of closed surfaces and of tables of containers, or one file
 };
 
 struct Range {
@@ -79,6 +81,8 @@ std::optional<Value> value_of(const M& m) {
     return static_cast<std::int64_t>(m);
   else if constexpr (std::is_same_v<M, std::filesystem::path>)
     return m.string();
+  else if constexpr (std::is_same_v<M, std::string>)
+    return m.empty() ? std::nullopt : std::optional<Value>(m);
   else if constexpr (std::is_same_v<M, std::vector<SceneSizes>> ||
                      std::is_same_v<M, std::vector<std::string>>)
     return m.empty() ? std::nullopt : std::optional<Value>(m);
@@ -94,7 +98,7 @@ void take_value(M& m, const Value& value) {
     m = static_cast<M>(std::get<std::int64_t>(value));
   else if constexpr (std::is_same_v<M, std::filesystem::path>)
     m = std::get<std::string>(value);
-  else if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double> ||
+  else if constexpr (std::is_same_v<M, bool> || std::is_same_v<M, double> || std::is_same_v<M, std::string> ||
                      std::is_same_v<M, std::vector<SceneSizes>> ||
                      std::is_same_v<M, std::vector<std::string>>)
     m = std::get<M>(value);
@@ -133,7 +137,8 @@ enum class Acts { everywhere, in_bed, in_box };
 struct Key {
   std::string_view name;
   Type type;
-  Member member = {};  ///< none of a key that the reader replaces by others
+  /// None of a key that the reader replaces by others, nor of what any container may have.
+  Member member = {};
   std::string_view help = {};
   Range range = {};
   std::vector<std::string_view> words = {};
@@ -269,5 +274,9 @@ std::string expectation(const Key&, const std::optional<Value>& given = {});
 /// Whether a value is one that the key accepts. Lengths and coordinates beyond 1e±30 are
 /// not.
 bool accepts(const Key&, const Value&);
+
+/// Throws Error{bad_scene} unless every value of the struct is one that a scene can say, by the entry's keys,
+/// choices and rule.
+void check(const Entry& entry, const void* options, const Section& section, bool in_bed = true);
 
 }  // namespace bernal::schema

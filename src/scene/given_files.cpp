@@ -13,8 +13,19 @@ namespace bernal {
 namespace {
 
 const PolygonSurface* surface_given(const Scene& scene, const std::filesystem::path& name) {
-  const auto* mesh = std::get_if<MeshFile>(&scene.container);
-  return mesh ? mesh->surface_called(name) : nullptr;
+  for (const MeshFile* mesh : scene.container.meshes())
+    if (const PolygonSurface* surface = mesh->surface_called(name)) return surface;
+  return nullptr;
+}
+
+/// Of a container that may be const.
+template <class Mesh, class Container>
+std::vector<Mesh*> meshes_in(Container& container) {
+  std::vector<Mesh*> all;
+  if (auto* own = std::get_if<MeshFile>(&container)) all.push_back(own);
+  for (auto& obstacle : container.obstacles)
+    if (auto* mesh = std::get_if<MeshFile>(&obstacle)) all.push_back(mesh);
+  return all;
 }
 
 const Spheres<dynamic>* spheres_given(const Scene& scene, const std::filesystem::path& name) {
@@ -28,6 +39,12 @@ void for_each_list(SceneSizes& sizes, const std::function<void(ListedSizes&)>& v
     for (SceneSizes& part : mixture->of) for_each_list(part, visit);
 }
 
+/// Those of zones after those of the scene.
+void for_each_list(Scene& scene, const std::function<void(ListedSizes&)>& visit) {
+  for_each_list(scene.sizes, visit);
+  for (Zone& zone : scene.zones) for_each_list(zone.spheres.sizes, visit);
+}
+
 /// Of a list whose file has not been given its place in a folder.
 const ListedSizes* list_given(const SceneSizes& sizes, const std::filesystem::path& name) {
   if (const auto* list = std::get_if<ListedSizes>(&sizes))
@@ -36,6 +53,13 @@ const ListedSizes* list_given(const SceneSizes& sizes, const std::filesystem::pa
     for (const SceneSizes& part : mixture->of)
       if (const ListedSizes* list = list_given(part, name)) return list;
   return nullptr;
+}
+
+const ListedSizes* list_given(const Scene& scene, const std::filesystem::path& name) {
+  const ListedSizes* list = list_given(scene.sizes, name);
+  for (auto zone = scene.zones.begin(); !list && zone != scene.zones.end(); ++zone)
+    list = list_given(zone->spheres.sizes, name);
+  return list;
 }
 
 std::string as_off(const PolygonSurface& surface) {
@@ -69,25 +93,26 @@ std::string as_npy(const Spheres<dynamic>& spheres) {
 
 }  // namespace
 
+std::vector<MeshFile*> SceneContainer::meshes() { return meshes_in<MeshFile>(*this); }
+std::vector<const MeshFile*> SceneContainer::meshes() const { return meshes_in<const MeshFile>(*this); }
+
 bool is_given(const Scene& scene, const std::filesystem::path& name) {
-  return surface_given(scene, name) || spheres_given(scene, name) || list_given(scene.sizes, name);
+  return surface_given(scene, name) || spheres_given(scene, name) || list_given(scene, name);
 }
 
 std::optional<std::string> content_given(const Scene& scene, const std::filesystem::path& name) {
   if (const auto* surface = surface_given(scene, name)) return as_off(*surface);
   if (const auto* spheres = spheres_given(scene, name)) return as_npy(*spheres);
-  if (const auto* list = list_given(scene.sizes, name)) return as_npy(list->values);
+  if (const auto* list = list_given(scene, name)) return as_npy(list->values);
   return {};
 }
 
 std::vector<std::filesystem::path*> files_named_in(Scene& scene) {
   std::vector<std::filesystem::path*> files;
-  if (auto* mesh = std::get_if<MeshFile>(&scene.container)) {
-    files.push_back(&mesh->file);
-    for (std::filesystem::path& file : mesh->obstacles) files.push_back(&file);
-  }
+  for (MeshFile* mesh : scene.container.meshes())
+    for (std::filesystem::path* file : mesh->files()) files.push_back(file);
   if (scene.start.file) files.push_back(&*scene.start.file);
-  for_each_list(scene.sizes, [&](ListedSizes& list) {
+  for_each_list(scene, [&](ListedSizes& list) {
     if (!list.beside.empty()) files.push_back(&list.beside);
   });
   return files;
@@ -96,7 +121,7 @@ std::vector<std::filesystem::path*> files_named_in(Scene& scene) {
 void put_long_lists_beside(Scene& scene) {
   constexpr std::size_t most_in_scene = 1000;
   int lists = 0;
-  for_each_list(scene.sizes, [&](ListedSizes& list) {
+  for_each_list(scene, [&](ListedSizes& list) {
     if (list.values.size() <= most_in_scene) return;
     list.beside = ++lists == 1 ? "sizes.npy" : fmt::format("sizes-{}.npy", lists);
   });

@@ -6,6 +6,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
 #include "scene/toml_text.hpp"
 
@@ -101,13 +102,11 @@ std::string_view contacts_that_use(const schema::Key& key, const Output& output)
 }
 
 const OutputTable& table_of(const Output& output) {
-  std::vector<std::string_view> names;
-  for (const OutputTable* table : output_tables()) {
+  for (const OutputTable* table : output_tables())
     if (table->name() == output.format) return *table;
-    names.push_back(table->name());
-  }
   throw Error(ErrorCode::bad_scene,
-              fmt::format("unknown format {}{}", toml_string(output.format), remedy(output.format, names)),
+              fmt::format("unknown format {}{}", toml_string(output.format),
+                          remedy_of_word(output.format, known_words_in(output_tables()))),
               output.locations.whole);
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
+#include "bernal/scene/sphere_classes.hpp"
 
 namespace bernal {
 
@@ -11,8 +12,27 @@ std::string_view name_of(Outcome outcome) {
   return names[static_cast<std::size_t>(outcome)];
 }
 
+namespace {
+
+/// The mean density of the spheres by volume.
+std::optional<double> density_of(const Packing& packing) {
+  if (packing.scene.zones.empty()) return packing.scene.material_density;
+  const std::vector<SphereClass> classes = classes_of(packing.scene);
+  double mass = 0, volume = 0;
+  for (std::size_t i = 0; i < packing.classes.size(); ++i) {
+    const std::optional<double>& density = classes[packing.classes[i]].material_density;
+    if (!density) return std::nullopt;
+    const double of_sphere = std::pow(packing.spheres.r[i], 3);
+    mass += *density * of_sphere;
+    volume += of_sphere;
+  }
+  return volume > 0 ? std::optional(mass / volume) : std::nullopt;
+}
+
+}  // namespace
+
 std::optional<double> mass_of(const Packing& packing, double packing_fraction) {
-  const std::optional<double>& density = packing.scene.material_density;
+  const std::optional<double> density = density_of(packing);
   if (!density || packing.scene.dimension() != 3) return std::nullopt;
   return *density * packing_fraction * packing.volume * std::pow(metres_per(packing.scene.unit), 3);
 }

@@ -58,7 +58,7 @@ static void archive(Archive& a, Packing& packing);
 /// first two and completes the last.
 static void archive(Archive& a, Scene& scene) {
   std::string toml, file = scene.file.string();
-  bool has_sizes = scene.draws() || scene.start.file;
+  bool has_sizes = scene.draws() || scene.start.file || !scene.zones.empty();
   if (!a.reads()) {
     Scene said = scene;
     if (!has_sizes) said.sizes = Constant{1};
@@ -67,7 +67,8 @@ static void archive(Archive& a, Scene& scene) {
   std::vector<std::string> names;
   for (const std::filesystem::path* const name : files_named_in(scene)) names.push_back(name->string());
   std::map<std::filesystem::path, std::shared_ptr<const PolygonSurface>> surfaces;
-  if (const auto* mesh = std::get_if<MeshFile>(&scene.container)) surfaces = mesh->surfaces;
+  for (const MeshFile* mesh : scene.container.meshes())
+    surfaces.insert(mesh->surfaces.begin(), mesh->surfaces.end());
   std::uint64_t count = surfaces.size();
   std::shared_ptr<const Packing> start = scene.start.packing;
   bool are_default = scene.stages_are_default;
@@ -90,7 +91,9 @@ static void archive(Archive& a, Scene& scene) {
       std::shared_ptr<const PolygonSurface> surface;
       a(name);
       archive_shared(a, surface);
-      std::get<MeshFile>(scene.container).surfaces.emplace(name, std::move(surface));
+      for (MeshFile* mesh : scene.container.meshes())
+        for (const std::filesystem::path* part : mesh->files())
+          if (*part == name) mesh->surfaces.emplace(name, surface);
     }
   } else {
     for (auto& [path, surface] : surfaces) {
@@ -104,8 +107,9 @@ static void archive(Archive& a, Scene& scene) {
 }
 
 static void archive(Archive& a, Packing& p) {
-  a(p.spheres, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.expected_of_sizes, p.size_scale,
-    p.scene, p.seed, p.threads, p.program, p.outcome, p.reason, p.effects, p.history, p.seconds, p.resumed);
+  a(p.spheres, p.classes, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.hints,
+    p.expected_of_sizes, p.bulk_density, p.size_scale, p.scene, p.seed, p.threads, p.program, p.outcome,
+    p.reason, p.effects, p.history, p.seconds, p.resumed);
 }
 
 /// Which bernal wrote the bytes, and whether this one may read them, stands in front; of those before 0.2 it

@@ -104,7 +104,8 @@ Entry extruded_entry() {
                 key(Type::lines, holes().inside(&Extruded::polygon), "holes",
                     "polygons in it that are taken out; one in another is an island"),
                 required(length(&Extruded::height, "height", "its length along z")),
-                key(Type::position, &Extruded::base, "base", "where the origin of the polygon lies")},
+                key(Type::position, &Extruded::base, "base", "where the origin of the polygon lies"),
+                obstacles_key()},
        .choices = {{{"polygon"}, {"file"}}},
        .rule = rule(extruded_rule)});
 }

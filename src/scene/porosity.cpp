@@ -23,6 +23,13 @@ static bool may_be_bed(const Scene& scene) {
   return has_floor && (scene.stages.empty() || std::ranges::any_of(scene.stages, makes_bed));
 }
 
+std::string doubt_of_density(std::string_view key, double density) {
+  constexpr double densest = 23;  // in g/cm³: osmium has 22.6
+  if (density >= densest) return {};
+  return fmt::format("\"{}\" = {:g} is in kg/m3; write \"{:g} g/cm3\" where that is meant", key, density,
+                     density);
+}
+
 void take_porosity(Scene& scene) {
   Target& target = scene.target;
   BedTarget& bed = target.bed;
@@ -33,11 +40,17 @@ void take_porosity(Scene& scene) {
     const double solid = *target.bulk_density / *scene.material_density;
     if (bed.porosity || bed.density)
       fail("\"bulk_density\" in [spheres] says how dense the bed is: leave \"bed\" and \"porosity\" out");
-    if (!range.contains(1 - solid))
+    if (!range.contains(1 - solid)) {
+      const std::string doubt = solid < 0.5 ? doubt_of_density("bulk_density", *target.bulk_density)
+                                            : doubt_of_density("material_density", *scene.material_density);
       fail(fmt::format(
-          "a \"bulk_density\" of {:g} kg/m3 with a \"material_density\" of {:g} leaves a porosity of "
-          "{:.3g}, and spheres leave one between {:g} and {:g}: is it the density of the material?",
-          *target.bulk_density, *scene.material_density, 1 - solid, range.min, range.max));
+          "a \"bulk_density\" of {:g} kg/m3 with a \"material_density\" of {:g} leaves a porosity "
+          "of {:.3g}, and spheres leave one between {:g} and {:g}{}",
+          *target.bulk_density, *scene.material_density, 1 - solid, range.min, range.max,
+          !doubt.empty() ? "; " + doubt
+          : solid > 0.5  ? ": is it the density of the material?"
+                         : ""));
+    }
     bed.porosity = rounded(1 - solid);
     target.bulk_density_asked = std::exchange(target.bulk_density, std::nullopt);
   }

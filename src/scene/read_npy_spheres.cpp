@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "bernal/core/error.hpp"
 #include "files/npy_file.hpp"
 
 namespace bernal {

@@ -10,8 +10,9 @@
 #include <toml++/toml.h>
 
 #include "bernal/core/text.hpp"
+#include "scene/keys_from_columns.hpp"
+#include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
-#include "scene/read_columns.hpp"
 #include "scene/read_value.hpp"
 #include "scene/said_in_phi.hpp"
 #include "scene/scene_entries.hpp"
@@ -19,6 +20,7 @@
 #include "scene/stage_table.hpp"
 #include "scene/toml_file.hpp"
 #include "scene/toml_text.hpp"
+#include "scene/zones.hpp"
 
 namespace bernal {
 namespace {
@@ -48,7 +50,8 @@ class Reader {
     read_own(root, schema::scene_entry(), "the scene", scene);
     unit_ = scene.unit;
     read_container(root, scene);
-    read_spheres(table_in(root, "spheres"), scene);
+    read_spheres(root, scene);
+    read_zones(root, scene);
     if (root.contains("accuracy"))
       read_own(table_in(root, "accuracy"), schema::accuracy_entry(), "[accuracy]", scene);
     read_engine(root, scene);
@@ -69,7 +72,7 @@ class Reader {
     check_names(root, schema::scene_entry(), {tables.begin(), tables.end()}, "the scene");
     for (const std::string_view name : tables)
       if (const toml::node* node = root.get(name);
-          node && name != "stage" && name != "output" && !node->is_table())
+          node && name != "stage" && name != "output" && name != "zone" && !node->is_table())
         fail(node->source(), "\"{0}\" must be a table [{0}], not {1}", name, written(*node));
   }
 
@@ -85,47 +88,73 @@ class Reader {
     scene.locations.whole = {file_};
   }
 
-  /// Where a file is that is named at a place: most often in the scene, and else in what lays values over it.
-  /// Behind links to folders ".." is what the system takes it for; a file that is a link itself may mean the
-  /// folder that the link stands in, or the one that it leads to.
-  static std::filesystem::path beside(const Location& place, const std::filesystem::path& file) {
-    std::error_code unknown;
-    const std::filesystem::path naming = place.file;
-    const std::filesystem::path here = naming.parent_path() / file, plain = here.lexically_normal();
-    if (std::filesystem::equivalent(here, plain, unknown)) return plain;
-    if (std::filesystem::exists(here, unknown)) return here;
-    const std::filesystem::path there = std::filesystem::canonical(naming, unknown).parent_path() / file;
-    return !unknown && std::filesystem::exists(there, unknown) ? there.lexically_normal() : plain;
-  }
-
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
-    schema::hold(scene.container,
-                 choose(table, "kind", names_of(schema::container_entries()), "[container]"));
-    read(table, schema::entry_of(scene.container), "kind", "[container]", schema::options_of(scene.container),
-         scene.container.locations);
-    auto* mesh = std::get_if<MeshFile>(&scene.container);
-    if (!mesh) return;
-    if (!root.contains("unit"))
+    read_solid(table, known_words_in(schema::container_entries()), "[container]", scene.container);
+    if (!scene.container.meshes().empty() && !root.contains("unit"))
       fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
-    const Locations& locations = scene.container.locations;
-    mesh->file = beside(locations.of("file"), mesh->file);
-    for (std::filesystem::path& file : mesh->obstacles) file = beside(locations.of("obstacles"), file);
+  }
+
+  /// A container or an obstacle; `kinds` may stand there.
+  void read_solid(const toml::table& table, const std::vector<KnownWord>& kinds, const std::string& where,
+                  SceneContainer& solid) const {
+    const auto& entries = schema::container_entries();
+    const std::size_t kind = choose(table, "kind", kinds, where);
+    const auto of_kind = std::ranges::find(entries, kinds[kind].name, &Entry::name);
+    schema::hold(solid, static_cast<std::size_t>(of_kind - entries.begin()));
+    read(table, *of_kind, {"kind"}, where, schema::options_of(solid), solid.locations);
+    if (auto* mesh = std::get_if<MeshFile>(&solid))
+      mesh->file = beside(solid.locations.of("file"), mesh->file);
+    if (const toml::node* rounding = table.get("rounding"))
+      solid.rounding = std::get<double>(read_value(*rounding, schema::rounding_key(), where));
+    if (const toml::node* obstacles = table.get("obstacles")) read_obstacles(*obstacles, where, solid);
+  }
+
+  /// A file, or an array of files and tables.
+  void read_obstacles(const toml::node& given, const std::string& where, SceneContainer& container) const {
+    const auto refuse = [&](const toml::node& node) {
+      fail(node.source(), "\"obstacles\" in {} must be {}, not {}", where,
+           schema::expectation(schema::obstacles_key()), written(node));
+    };
+    const toml::array* array = given.as_array();
+    if (array ? array->empty() : !given.is_string()) refuse(given);
+    for (std::size_t k = 0; k < (array ? array->size() : 1); ++k) {
+      const toml::node& node = array ? (*array)[k] : given;
+      if (const toml::table* table = node.as_table()) {
+        const std::string name = fmt::format("solid {} of obstacles of {}", k + 1, where);
+        read_solid(*table, schema::kinds_of_solids(), name, container.obstacles.emplace_back());
+        if (table->contains("obstacles")) fail(table->source(), "{} cannot have obstacles of its own", name);
+        continue;
+      }
+      const auto name = node.value<std::string>();
+      if (!name || !schema::accepts(schema::obstacles_key(), *name)) refuse(node);
+      const std::filesystem::path file = beside(container.locations.of("obstacles"), *name);
+      if (auto* mesh = std::get_if<MeshFile>(&container)) {
+        mesh->obstacles.push_back(file);
+      } else {
+        container.obstacles.emplace_back(MeshFile{.file = file});
+        container.obstacles.back().locations = {at(node.source()), {{"file", at(node.source())}}};
+      }
+    }
   }
 
   void read_engine(const toml::table& root, Scene& scene) const {
     if (!root.contains("engine")) return;
     const toml::table& table = table_in(root, "engine");
     SceneEngine& engine = scene.engine.emplace();
-    schema::hold(engine, choose(table, "kind", names_of(schema::engine_entries()), "[engine]"));
+    schema::hold(engine, choose(table, "kind", known_words_in(schema::engine_entries()), "[engine]"));
     engine.locations.keys["kind"] = at(table.find("kind")->first.source());
-    read(table, schema::entry_of(engine), "kind", "[engine]", schema::options_of(engine), engine.locations);
+    read(table, schema::entry_of(engine), {"kind"}, "[engine]", schema::options_of(engine), engine.locations);
   }
 
-  void read_spheres(const toml::table& table, Scene& scene) {
+  /// Zones need no others beside theirs.
+  void read_spheres(const toml::table& root, Scene& scene) {
+    const bool has_zones = root.contains("zone");
+    if (has_zones && !root.contains("spheres")) return;
+    const toml::table& table = table_in(root, "spheres");
     sizes_are_diameters_ = table.contains("diameter");
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
-    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start"))
+    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start") && !has_zones)
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
     scene.target.where = at(table.source());
@@ -134,41 +163,50 @@ class Reader {
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
   }
 
-  /// All tables [[name]]; null where there are none.
-  const toml::array* tables_in(const toml::table& root, std::string_view name) const {
+  void read_zones(const toml::table& root, Scene& scene) {
+    for (const toml::table* table : tables_in(root, "zone")) {
+      Zone& zone = scene.zones.emplace_back();
+      Scene& spheres = zone.spheres;
+      const std::string where = section_name_of_zone(scene.zones.size());
+      sizes_are_diameters_ = table->contains("diameter");
+      read(*table, schema::zone_entry(), names_of(schema::spheres_of_zone_entry().keys), where, &zone,
+           zone.locations);
+      spheres.file = path_;
+      read(*table, schema::spheres_of_zone_entry(), names_of(schema::zone_entry().keys), where, &spheres,
+           spheres.locations);
+      spheres.target.where = spheres.locations.whole;
+    }
+  }
+
+  /// All tables [[name]].
+  std::vector<const toml::table*> tables_in(const toml::table& root, std::string_view name) const {
+    std::vector<const toml::table*> all;
     const toml::node* node = root.get(name);
-    if (!node) return nullptr;
-    const toml::array* all = node->as_array();
-    if (!all || all->empty() || !all->is_array_of_tables())
+    if (!node) return all;
+    if (const toml::array* array = node->as_array(); !array || array->empty() || !array->is_array_of_tables())
       fail(node->source(), "\"{0}\" must be one table [[{0}]] {1} {0}, not {2}", name,
            name == "output" ? "an" : "a", written(*node));
+    for (const toml::node& item : *node->as_array()) all.push_back(item.as_table());
     return all;
   }
 
   void read_stages(const toml::table& root, Scene& scene) const {
-    const toml::array* stages = tables_in(root, "stage");
-    if (!stages) return;
-    Names names;
-    for (const StageTable* stage : stage_tables()) names.push_back(stage->name());
-    for (const toml::node& item : *stages) {
-      const toml::table& table = *item.as_table();
-      const StageTable& stage = *stage_tables()[choose(table, "do", names, "[[stage]]")];
+    for (const toml::table* table : tables_in(root, "stage")) {
+      const StageTable& stage =
+          *stage_tables()[choose(*table, "do", known_words_in(stage_tables()), "[[stage]]")];
       Stage& made = scene.stages.emplace_back(stage.make());
-      read(table, stage.keys, "do", fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
+      read(*table, stage.keys, {"do"}, fmt::format("[[stage]] {}", stage.name()), stage.options_of(made),
            made.locations);
     }
   }
 
   void read_outputs(const toml::table& root, Scene& scene) const {
-    const toml::array* outputs = tables_in(root, "output");
-    if (!outputs) return;
-    Names names;
-    for (const OutputTable* format : output_tables()) names.push_back(format->name());
-    for (const toml::node& item : *outputs) {
-      const toml::table& table = *item.as_table();
-      const OutputTable& format = *output_tables()[choose(table, "format", names, "[[output]]")];
+    for (const toml::table* table : tables_in(root, "output")) {
+      const OutputTable& format =
+          *output_tables()[choose(*table, "format", known_words_in(output_tables()), "[[output]]")];
       Output& made = scene.outputs.emplace_back(Output{.format = std::string(format.name())});
-      read(table, format.keys, "format", fmt::format("[[output]] {}", format.name()), &made, made.locations);
+      read(*table, format.keys, {"format"}, fmt::format("[[output]] {}", format.name()), &made,
+           made.locations);
     }
   }
 
@@ -191,10 +229,11 @@ class Reader {
          instead.empty() ? remedy(unknown->str(), known) : instead);
   }
 
-  /// Which of several names a table has under `selector`, by its place among them.
-  std::size_t choose(const toml::table& table, std::string_view selector, const Names& names,
+  /// Which of several words a table has under `selector`, by its place among them.
+  std::size_t choose(const toml::table& table, std::string_view selector, const std::vector<KnownWord>& known,
                      std::string_view where) const {
     const toml::node* node = table.get(selector);
+    const Names names = names_of(known);
     if (!node)
       fail(table.source(), "missing \"{}\" in {}; it is one of \"{}\"", selector, where,
            fmt::join(names, "\", \""));
@@ -205,7 +244,7 @@ class Reader {
     const auto found = std::ranges::find(names, word->get());
     if (found == names.end())
       fail(node->source(), "unknown {} {} in {}{}", selector == "do" ? "stage" : selector, written(*node),
-           where, remedy(word->get(), names));
+           where, remedy_of_word(word->get(), known));
     return static_cast<std::size_t>(found - names.begin());
   }
 
@@ -238,22 +277,23 @@ class Reader {
            written(*node.as_array()->get(*k)));
     if (key.type == Type::word && node.is_string())
       fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
-           remedy(std::get<std::string>(*value), key.words));
+           remedy_of_word(std::get<std::string>(*value), {key.words.begin(), key.words.end()}));
     fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
          written(node));
   }
 
-  /// All keys of an entry that the table has; what is missing, `complete` finds. Refuses unknown ones, except
-  /// at the top of the file, where the tables stand between the keys: there `check_names` does.
-  void read(const toml::table& table, const Entry& entry, std::string_view selector, const std::string& where,
+  /// All keys of an entry that the table has, besides `others`; what is missing, `complete` finds. Refuses
+  /// unknown ones, except at the top of the file, where the tables stand between the keys: there
+  /// `check_names` does.
+  void read(const toml::table& table, const Entry& entry, const Names& others, const std::string& where,
             void* options, Locations& locations) const {
-    if (&entry != &schema::scene_entry())
-      check_names(table, entry, selector.empty() ? Names{} : Names{selector}, where);
+    if (&entry != &schema::scene_entry()) check_names(table, entry, others, where);
     if (locations.whole.file.empty()) locations.whole = at(table.source());
     for (const Key& key : entry.keys) {
       const auto found = table.find(key.name);
       if (found == table.end()) continue;
       locations.keys[std::string(key.name)] = at(found->first.source());
+      if (!key.member.set && key.type != Type::file) continue;  // see `read_solid`
       if (key.member.set) {
         key.member.set(options, read_value(found->second, key, where));
         continue;
@@ -266,55 +306,14 @@ class Reader {
     }
   }
 
-  static bool comes_from_file(const Entry& entry, const Key& key) {
-    return entry.columns.empty() ? key.type == Type::points
-                                 : std::ranges::find(entry.columns, key.name) != entry.columns.end();
-  }
-
-  static constexpr std::size_t most_listed = 20'000'000;
-
   /// Puts what stands in the file in its place, so that the scene is whole without the file.
   void take_columns(const toml::node& node, const Entry& entry, const std::string& where, void* options,
                     Locations& locations) const {
     const std::string file = std::get<std::string>(read_value(node, *entry.find("file"), where));
     const Location at_file = locations.of("file");
-    if (entry.columns.empty()) return take_points(file, entry, where, options, locations);
-    std::vector<const Key*> keys;
-    for (const std::string_view column : entry.columns) keys.push_back(entry.find(column));
-    const bool is_list = keys.size() == 1;
     try {
-      // More points are measurements, not a distribution; and a scene has to hold them.
-      WantedColumns wanted{keys, unit_, is_list ? most_listed : 4096,
-                           is_list ? "take a histogram of them" : "sum them up in fewer",
-                           entry.find("retained")};
-      const auto columns = read_columns(beside(at_file, file), wanted);
-      keys = wanted.keys;
-      for (std::size_t k = 0; k < keys.size(); ++k) {
-        keys[k]->member.set(options, columns[k]);
-        locations.keys[std::string(keys[k]->name)] = at_file;
-      }
-    } catch (const Error& error) {
-      if (!error.location().file.empty()) throw;
-      throw Error(error.code(), fmt::format("\"file\" in {}: {}", where, error.what()), at_file);
-    }
-  }
-
-  /// The corners of a line from a file of two columns.
-  void take_points(const std::filesystem::path& file, const Entry& entry, const std::string& where,
-                   void* options, Locations& locations) const {
-    static const Key x{.name = "x", .type = Type::coordinates}, y{.name = "y", .type = Type::coordinates};
-    const Location at_file = locations.of("file");
-    try {
-      // So many, which the scene of a result holds, can be read there again.
-      WantedColumns wanted{
-          {&x, &y}, unit_, 20'000, "leave out corners that are finer than discs or spheres can feel"};
-      const auto columns = read_columns(beside(at_file, file), wanted);
-      Polygon polygon{{{}}};
-      for (std::size_t k = 0; k < columns[0].size(); ++k)
-        polygon.loops.front().emplace_back(columns[0][k], columns[1][k]);
-      const auto key = std::ranges::find(entry.keys, Type::points, &Key::type);
-      key->member.set(options, polygon);
-      locations.keys[std::string(key->name)] = at_file;
+      for (const Key* key : keys_from_columns(beside(at_file, file), entry, unit_, options))
+        locations.keys[std::string(key->name)] = at_file;
     } catch (const Error& error) {
       if (!error.location().file.empty()) throw;
       throw Error(error.code(), fmt::format("\"file\" in {}: {}", where, error.what()), at_file);
@@ -327,9 +326,9 @@ class Reader {
     if (const toml::table* table = node.as_table()) {
       const std::string named = fmt::format("{} of {}", key.name, where);
       const auto& entries = schema::size_entries();
-      const std::size_t n = choose(*table, "distribution", names_of(entries), named);
+      const std::size_t n = choose(*table, "distribution", known_words_in(entries), named);
       schema::hold(sizes, n);
-      read(*table, entries[n], "distribution", named, schema::options_of(sizes), sizes.locations);
+      read(*table, entries[n], {"distribution"}, named, schema::options_of(sizes), sizes.locations);
       return sizes;
     }
     if (const auto* word = node.as_string();
@@ -367,7 +366,7 @@ class Reader {
     throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
   }
 
-  static constexpr std::array<std::string_view, 6> tables = {"container", "spheres", "accuracy",
+  static constexpr std::array<std::string_view, 7> tables = {"container", "spheres", "zone",  "accuracy",
                                                              "engine",    "stage",   "output"};
 
   std::filesystem::path path_;

@@ -97,16 +97,6 @@ std::optional<schema::Value> lines_in(const toml::node& node, bool one, const Me
   return polygon;
 }
 
-/// "z < 5 mm" as "z < 5".
-static std::string without_unit(const std::string& name, const Measured& measured) {
-  const std::size_t sign = name.find_last_of("=<>");
-  if (measured.quantity == Quantity::none || sign == std::string::npos) return name;
-  std::string complaint;
-  const auto value =
-      number_with_unit(std::string_view(name).substr(sign + 1), measured.quantity, measured.unit, complaint);
-  return value ? fmt::format("{} {}", name.substr(0, sign + 1), *value) : name;
-}
-
 std::optional<std::size_t> first_that_is_no_point(const toml::node& node) {
   const toml::array* line = node.as_array();
   for (std::size_t k = 0; line && k < line->size(); ++k)
@@ -118,7 +108,8 @@ std::optional<schema::Value> names_in(const toml::node& node, const Measured& me
   std::vector<std::string> names;
   const auto take = [&](const toml::node& item) {
     if (const auto* text = item.as_string())
-      names.push_back(without_unit(text->get(), measured));
+      names.push_back(measured.quantity == Quantity::none ? text->get()
+                                                          : without_unit(text->get(), measured.unit));
     else if (const auto* number = item.as_integer())
       names.push_back(fmt::format("{}", number->get()));
     else

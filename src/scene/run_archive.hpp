@@ -8,6 +8,7 @@ namespace bernal {
 
 inline void archive(Archive& a, Program& p) { a(p.version, p.commit, p.packings_number); }
 inline void archive(Archive& a, Effect& effect) { a(effect.name, effect.calls, effect.seconds); }
+inline void archive(Archive& a, Packing::BulkDensity& b) { a(b.asked, b.reached); }
 inline void archive(Archive& a, Milestone& m) {
   a(m.stage, m.spheres, m.packing_fraction, m.potential, m.max_overlap, m.seconds);
 }

@@ -28,55 +28,6 @@ namespace {
 
 std::vector<std::string_view> words(std::span<const std::string_view> of) { return {of.begin(), of.end()}; }
 
-/// A number, or "predicted".
-Member packing_fraction() {
-  Member member;
-  member.get = [](const void* scene) -> std::optional<Value> {
-    const Target& target = static_cast<const Scene*>(scene)->target;
-    if (target.packing_fraction) return *target.packing_fraction;
-    return target.predicted ? std::optional<Value>(std::string("predicted")) : std::nullopt;
-  };
-  member.set = [](void* scene, const Value& value) {
-    Target& target = static_cast<Scene*>(scene)->target;
-    target.predicted = std::holds_alternative<std::string>(value);
-    if (!target.predicted) target.packing_fraction = std::get<double>(value);
-  };
-  return member;
-}
-
-/// Said only where it is true.
-Member fill() {
-  Member member(&Target::fill);
-  member.get = [](const void* target) -> std::optional<Value> {
-    return static_cast<const Target*>(target)->fill ? std::optional<Value>(true) : std::nullopt;
-  };
-  return member.inside(&Scene::target);
-}
-
-/// The same of what the scene says of a bed.
-template <class M>
-Member of_bed(M BedTarget::*member) {
-  return Member(member).inside(&Target::bed).inside(&Scene::target);
-}
-
-/// The same of what the scene says of its start.
-template <class M>
-Member of_start(M Start::*member) {
-  return Member(member).inside(&Scene::start);
-}
-
-void spheres_rule(const Scene& scene, const Section& section) {
-  scale_rule(scene, section);
-  amounts_rule(scene, section);
-  if (const BedTarget& bed = scene.target.bed; bed.heap_angle && bed.top != BedTarget::Top::heap)
-    section.fail("heap_angle",
-                 "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
-  // The one that is read last is all that the scene still holds.
-  if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
-    section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
-  start_rule(scene, section);
-}
-
 void box_rule(const Box& box, const Section& section) {
   if (box.repeats())
     section.refuse("size",
@@ -151,20 +102,6 @@ Member repair() {
   return member;
 }
 
-Member obstacles() {
-  Member member;
-  member.get = [](const void* mesh) {
-    std::vector<std::string> all;
-    for (const auto& file : static_cast<const MeshFile*>(mesh)->obstacles) all.push_back(file.string());
-    return value_of(all);
-  };
-  member.set = [](void* mesh, const Value& value) {
-    const auto& all = std::get<std::vector<std::string>>(value);
-    static_cast<MeshFile*>(mesh)->obstacles = {all.begin(), all.end()};
-  };
-  return member;
-}
-
 void mesh_rule(const MeshFile& mesh, const Section& section) {
   if (mesh.ignore_unit_of_file && !mesh.unit)
     section.refuse("ignore_unit_of_file", "needs a \"unit\" beside it, that of the file's coordinates");
@@ -177,6 +114,25 @@ void mesh_rule(const MeshFile& mesh, const Section& section) {
 
 }  // namespace
 
+Key obstacles_key() {
+  return {.name = "obstacles",
+          .type = Type::solids,
+          .help =
+              "what is taken out of it: files of closed surfaces, and tables such as { kind = \"cylinder\", "
+              "radius = 1, height = 9 }"};
+}
+
+Key rounding_key() {
+  return length({}, "rounding", "its edges are rounded with this radius; if absent they are sharp");
+}
+
+std::vector<KnownWord> kinds_of_solids() {
+  std::vector<KnownWord> kinds;
+  for (const Entry& entry : container_entries())
+    if (entry.find("obstacles")) kinds.emplace_back(entry.name, entry.help);
+  return kinds;
+}
+
 const Entry& scene_entry() {
   static const Entry made = entry<Scene>(
       {.name = "scene",
@@ -184,96 +140,6 @@ const Entry& scene_entry() {
        .keys = {word(&Scene::unit, "unit", "unit of every length in the scene; required with a mesh",
                      words(unit_names())),
                 integer(&Scene::seed, "seed", "one seed gives one packing, bit for bit", {0, 0x1p63})}});
-  return made;
-}
-
-const Entry& spheres_entry() {
-  static const Entry made = [] {
-    Entry of{
-        .name = "spheres",
-        .help = "how many spheres there are, and how large",
-        .keys = {integer(Member(&Target::count).inside(&Scene::target), "count", "stop at this many spheres",
-                         {1, 0x1p31 - 1}),
-                 number(packing_fraction(), "packing_fraction",
-                        "stop when the spheres fill this fraction of the container; \"predicted\": as "
-                        "much as is predicted, less the error of that",
-                        packing_fractions()),
-                 flag(fill(), "fill", "true: as many spheres as the stages can place", {1, 1}),
-                 of_quantity(Quantity::mass,
-                             number(Member(&Target::mass).inside(&Scene::target), "mass",
-                                    "of all spheres, \"2 kg\" or in kg, in place of a count: with the "
-                                    "material_density as many as weigh that",
-                                    above(0, largest_length))),
-                 length(of_bed(&BedTarget::height), "height",
-                        "of a bed: as many spheres as make its surface lie so high above the lowest point"),
-                 number(of_bed(&BedTarget::layers), "bed_layers",
-                        "the height of a bed in mean diameters of the spheres", above(0, 1e9)),
-                 word(of_bed(&BedTarget::density), "bed",
-                      "a bed under gravity: poured (settled without friction), vibrated (denser) or loose "
-                      "(arches that friction holds are kept)",
-                      {"poured", "vibrated", "loose"}),
-                 word(of_bed(&BedTarget::top), "top",
-                      "of a bed: free (as the spheres fall), level (none above a plane) or heap (none above "
-                      "a cone)",
-                      {"free", "level", "heap"}),
-                 number(of_bed(&BedTarget::heap_angle), "heap_angle",
-                        "of the flanks of a heap with the level, in degrees; if absent 20", above(0, 45)),
-                 number(of_bed(&BedTarget::porosity), "porosity",
-                        "of a bed, up to its surface, in place of bed = …: the share of the volume that is "
-                        "left free; where there is no bed, 1 - packing_fraction",
-                        between(0.2, 0.95)),
-                 of_quantity(Quantity::density,
-                             number(Member(&Target::bulk_density).inside(&Scene::target), "bulk_density",
-                                    "in kg/m3, in place of a porosity: 1 - bulk_density / material_density",
-                                    above(0, largest_length))),
-                 of_quantity(Quantity::density,
-                             number(&Scene::material_density, "material_density",
-                                    "of the spheres themselves, in kg/m3: 2500 is glass, 7850 steel",
-                                    above(0, largest_length))),
-                 size_key(false),
-                 size_key(true),
-                 scale_key(),
-                 of_quantity(Quantity::length,
-                             number(&Scene::gap, "gap",
-                                    "least distance between the surfaces of two spheres, and of a sphere "
-                                    "and its own image",
-                                    {0, largest_length})),
-                 of_quantity(Quantity::length, number(&Scene::wall_gap, "wall_gap",
-                                                      "least distance of a sphere's surface from the walls",
-                                                      {0, largest_length})),
-                 word(&Scene::draw, "draw",
-                      "sizes at random, or quantiles: evenly over the distribution; if absent quantiles "
-                      "where relax or grow packs a container, and wherever few spheres carry much of the "
-                      "volume; else random",
-                      words(draw_words)),
-                 key(Type::file, of_start(&Start::file), "start",
-                     "spheres to begin from: a CSV file whose header names x, y, z and r or d, or a "
-                     "folder with a result; those that are drawn come after them, and where no sizes "
-                     "are given these are all there are"),
-                 word(of_start(&Start::unit), "start_unit",
-                      "of the start, where its file has no line \"# unit: mm\"; if absent the scene's",
-                      words(unit_names())),
-                 key(Type::lengths, of_start(&Start::box), "start_box",
-                     "in periodic boxes: edges of the one that the start lies in; if absent those of "
-                     "the folder's box, else the size of the container"),
-                 names(of_start(&Start::sha256), "start_sha256",
-                       "of the start's file, as sha256sum prints it: other bytes are refused; a result "
-                       "names it")},
-        .choices = {{{"count"},
-                     {"packing_fraction"},
-                     {"fill"},
-                     {"count", "packing_fraction"},
-                     {"height"},
-                     {"bed_layers"},
-                     {"mass"},
-                     {"mass", "packing_fraction"},
-                     {}},
-                    {{"bed"}, {"porosity"}, {"bulk_density"}, {}},
-                    {{"radius"}, {"diameter"}}},
-        .rule = rule(spheres_rule)};
-    of.keys[1].words = {"predicted"};
-    return entry<Scene>(std::move(of));
-  }();
   return made;
 }
 
@@ -302,7 +168,8 @@ const std::vector<Entry>& container_entries() {
       entry<Box>({.name = "box",
                   .help = "a box along the axes; with two edges a rectangle, for discs",
                   .keys = {required(key(Type::extents, &Box::size, "size", "its edges")),
-                           key(Type::corner, &Box::corner, "corner", "its lowest corner")},
+                           key(Type::corner, &Box::corner, "corner", "its lowest corner"), rounding_key(),
+                           obstacles_key()},
                   .rule = rule(box_rule),
                   .complete = completion(complete_box)}),
       entry<Cylinder>(
@@ -315,7 +182,8 @@ const std::vector<Entry>& container_entries() {
                     key(Type::position, &Cylinder::base, "base", "the middle of its base"),
                     flag(&Cylinder::periodic, "periodic",
                          "true: no lids, an endless column that repeats itself with the period height; its "
-                         "axis lies along x, y or z")},
+                         "axis lies along x, y or z"),
+                    rounding_key(), obstacles_key()},
            .rule = rule(cylinder_rule)}),
       entry<MeshFile>(
           {.name = "mesh",
@@ -332,7 +200,7 @@ const std::vector<Entry>& container_entries() {
                                 words(up_words))),
                     names(&MeshFile::solids, "solids",
                           "those of the file's solids that are meant, by name or by number from 1"),
-                    names(obstacles(), "obstacles", "files of closed surfaces that are taken out of it"),
+                    obstacles_key(),
                     length(&MeshFile::weld, "weld",
                            "corners of open edges up to this far apart are one; if absent, what rounding "
                            "explains"),
@@ -360,10 +228,11 @@ const std::vector<Entry>& container_entries() {
                           "they are refused; a result names it; a glTF counts together with its buffers, "
                           "cat part.gltf part.bin | sha256sum")},
            .rule = rule(mesh_rule)}),
-      entry<Sphere>({.name = "sphere",
-                     .help = "a sphere",
-                     .keys = {required(length(&Sphere::radius, "radius", "its radius")),
-                              key(Type::position, &Sphere::center, "center", "its centre")}}),
+      entry<Sphere>(
+          {.name = "sphere",
+           .help = "a sphere",
+           .keys = {required(length(&Sphere::radius, "radius", "its radius")),
+                    key(Type::position, &Sphere::center, "center", "its centre"), obstacles_key()}}),
       entry<PeriodicBox>(
           {.name = "periodic",
            .help = "a box that repeats itself in all directions, or in all but those with walls",

@@ -12,10 +12,10 @@ using schema::Entry;
 
 /// In the order of schema::Type.
 constexpr std::string_view type_words[] = {
-    "flag",        "integer",  "number", "length",  "word",    "file",         "direction",
-    "push",        "position", "names",  "corner",  "extents", "points",       "lines",
-    "coordinates", "lengths",  "shares", "amounts", "axes",    "distribution", "parts"};
-static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::parts) + 1);
+    "flag",     "integer", "number",  "length", "word",         "file",   "direction", "push",
+    "position", "text",    "names",   "corner", "extents",      "points", "lines",     "coordinates",
+    "lengths",  "shares",  "amounts", "axes",   "distribution", "parts",  "solids"};
+static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::solids) + 1);
 /// In the order of schema::Acts.
 constexpr std::string_view acts_words[] = {"everywhere", "in_bed", "in_box"};
 /// In the order of Quantity.
@@ -59,13 +59,18 @@ std::vector<ReferenceGroup> scene_reference() {
       {"diameter", "distribution", "Sizes: distribution = \"…\" in radius or diameter", {}},
       {"stage", "do", "Stages: do = \"…\" in [[stage]]", {}},
       {"output", "format", "Files for other programs: format = \"…\" in [[output]]", {}},
-      {"engine", "kind", "Other programs that find the places: kind = \"…\" in [engine]", {}}};
+      {"engine", "kind", "Other programs that find the places: kind = \"…\" in [engine]", {}},
+      {"zone", "", "Parts of a container with spheres of their own: [[zone]]", {}}};
   for (const Entry* entry : schema::own_entries()) groups[0].tables.push_back(described(*entry));
   for (const Entry& entry : schema::container_entries()) groups[1].tables.push_back(described(entry));
   for (const Entry& entry : schema::size_entries()) groups[2].tables.push_back(described(entry));
   for (const StageTable* table : stage_tables()) groups[3].tables.push_back(described(table->keys));
   for (const OutputTable* table : output_tables()) groups[4].tables.push_back(described(table->keys));
   for (const Entry& entry : schema::engine_entries()) groups[5].tables.push_back(described(entry));
+  ReferenceTable zone = described(schema::zone_entry()), spheres = described(schema::spheres_of_zone_entry());
+  zone.keys.insert(zone.keys.end(), spheres.keys.begin(), spheres.keys.end());
+  zone.choices.insert(zone.choices.end(), spheres.choices.begin(), spheres.choices.end());
+  groups[6].tables.push_back(std::move(zone));
   return groups;
 }
 

@@ -1,5 +1,3 @@
-#include <functional>
-
 #include <fmt/format.h>
 
 #include "scene/scene_entries.hpp"
@@ -61,7 +59,7 @@ Entry cone_entry() {
                                      key(Type::amounts, &Cone::radii, "radii",
                                          "at the base and at the top, [r0, r1]; one of them may be 0"))),
                 required(length(&Cone::height, "height", "its length along the axis")), axis_key<Cone>(),
-                key(Type::position, &Cone::base, "base", "the middle of its base")},
+                key(Type::position, &Cone::base, "base", "the middle of its base"), obstacles_key()},
        .rule = rule(cone_rule)});
 }
 
@@ -72,7 +70,7 @@ Entry tube_entry() {
        .keys = {required(length(&Tube::radius, "radius", "that of the outer wall")),
                 required(length(&Tube::inner_radius, "inner_radius", "that of the inner wall")),
                 required(length(&Tube::height, "height", "its length along the axis")), axis_key<Tube>(),
-                key(Type::position, &Tube::base, "base", "the middle of its base")},
+                key(Type::position, &Tube::base, "base", "the middle of its base"), obstacles_key()},
        .rule = rule(tube_rule)});
 }
 
@@ -86,7 +84,8 @@ Entry lathed_entry() {
                     "with one end on the axis a level line closes it; else the line between its ends"),
                 {.name = "file", .type = Type::file, .help = "two columns, r and z: the profile's points"},
                 axis_key<Lathed>(),
-                key(Type::position, &Lathed::base, "base", "the point of the axis where z is 0")},
+                key(Type::position, &Lathed::base, "base", "the point of the axis where z is 0"),
+                obstacles_key()},
        .choices = {{{"profile"}, {"file"}}},
        .rule = rule(lathed_rule)});
 }

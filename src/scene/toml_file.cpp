@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -100,6 +101,16 @@ toml::table parse_toml(std::string_view text, const std::filesystem::path& name)
 Location location_of(const toml::source_region& where, const std::string& otherwise) {
   return {where.path ? *where.path : otherwise, static_cast<int>(where.begin.line),
           static_cast<int>(where.begin.column)};
+}
+
+std::filesystem::path beside(const Location& place, const std::filesystem::path& file) {
+  std::error_code unknown;
+  const std::filesystem::path naming = place.file;
+  const std::filesystem::path here = naming.parent_path() / file, plain = here.lexically_normal();
+  if (std::filesystem::equivalent(here, plain, unknown)) return plain;
+  if (std::filesystem::exists(here, unknown)) return here;
+  const std::filesystem::path there = std::filesystem::canonical(naming, unknown).parent_path() / file;
+  return !unknown && std::filesystem::exists(there, unknown) ? there.lexically_normal() : plain;
 }
 
 }  // namespace bernal

@@ -24,4 +24,9 @@ toml::table parse_toml(std::string_view text, const std::filesystem::path& name)
 /// Where a part of a file stands; of what nobody wrote only the file, `otherwise`, is known.
 Location location_of(const toml::source_region& where, const std::string& otherwise);
 
+/// Where a file is that is named at a place: most often in the scene, and else in what lays values over it.
+/// Behind links to folders ".." is what the system takes it for; a file that is a link itself may mean the
+/// folder that the link stands in, or the one that it leads to.
+std::filesystem::path beside(const Location& place, const std::filesystem::path& file);
+
 }  // namespace bernal

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -65,14 +64,10 @@ fs::path only_spheres_file_in(const fs::path& folder) {
 Scene scene_in(const fs::path& folder) {
   const fs::path file = folder / "scene.toml", there = where_it_stands(file);
   Scene scene = there == file ? read_scene(file) : parse_scene(bytes_of_file(there), file);
-  if (auto* mesh = std::get_if<MeshFile>(&scene.container)) {
-    const auto find = [&](fs::path& part) {
-      if (part.lexically_normal() == (folder / part.filename()).lexically_normal())
-        part = where_it_stands(part);
-    };
-    find(mesh->file);
-    std::ranges::for_each(mesh->obstacles, find);
-  }
+  for (MeshFile* mesh : scene.container.meshes())
+    for (fs::path* part : mesh->files())
+      if (part->lexically_normal() == (folder / part->filename()).lexically_normal())
+        *part = where_it_stands(*part);
   return scene;
 }
 

@@ -90,10 +90,23 @@ std::string engine_as_toml(const SceneEngine& engine) {
                      lines(entry, schema::options_of(engine)));
 }
 
+/// Without the kind.
+std::vector<std::string> assignments_of(const SceneContainer& container) {
+  std::vector<std::string> all = assignments(schema::entry_of(container), schema::options_of(container));
+  if (container.rounding > 0) all.push_back(fmt::format("rounding = {}", container.rounding));
+  std::vector<std::string> obstacles;
+  if (const auto* mesh = std::get_if<MeshFile>(&container))
+    for (const std::filesystem::path& file : mesh->obstacles) obstacles.push_back(toml_string(file.string()));
+  for (const SceneContainer& solid : container.obstacles)
+    obstacles.push_back(fmt::format("{{ kind = {}, {} }}", toml_string(schema::entry_of(solid).name),
+                                    fmt::join(assignments_of(solid), ", ")));
+  if (!obstacles.empty()) all.push_back(fmt::format("obstacles = [{}]", fmt::join(obstacles, ", ")));
+  return all;
+}
+
 std::string container_as_toml(const SceneContainer& container) {
-  const schema::Entry& entry = schema::entry_of(container);
-  return fmt::format("[container]\nkind = {}\n{}", toml_string(entry.name),
-                     lines(entry, schema::options_of(container)));
+  return fmt::format("[container]\nkind = {}\n{}\n", toml_string(schema::entry_of(container).name),
+                     fmt::join(assignments_of(container), "\n"));
 }
 
 /// "median 1", for a key and its value.
@@ -134,6 +147,9 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
   std::string out = fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
                                 container_as_toml(named.container), lines(schema::spheres_entry(), &named),
                                 lines(schema::accuracy_entry(), &scene));
+  for (const Zone& zone : named.zones)
+    out += fmt::format("\n[[zone]]\n{}{}", lines(schema::zone_entry(), &zone),
+                       lines(schema::spheres_of_zone_entry(), &zone.spheres));
   if (scene.engine) out += engine_as_toml(*scene.engine);
   if (!scene.stages.empty()) out.append("\n").append(stages_as_toml(scene));
   for (const Output& output : scene.outputs) {

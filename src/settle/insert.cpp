@@ -10,7 +10,6 @@
 
 #include "work/random_insertion.hpp"
 #include "work/snug_places.hpp"
-#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {

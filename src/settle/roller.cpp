@@ -1,7 +1,5 @@
 #include "settle/roller.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace bernal {

@@ -1,7 +1,6 @@
 #include "settle/steepest_way.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/QR>
 

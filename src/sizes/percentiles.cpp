@@ -1,7 +1,6 @@
 #include "bernal/sizes/percentiles.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "sizes/check.hpp"
 #include "sizes/standard_normal.hpp"

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "bernal/core/dimension.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "core/fnv.hpp"
 #include "core/parallel.hpp"

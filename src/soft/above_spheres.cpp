@@ -1,7 +1,6 @@
 #include "soft/above_spheres.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <utility>
 #include <vector>

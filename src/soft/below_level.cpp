@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 #include "domain/nearest_first.hpp"
 #include "domain/places.hpp"

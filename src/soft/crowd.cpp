@@ -1,11 +1,11 @@
 #include "soft/crowd.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <optional>
 
 #include "core/every_dimension.hpp"
+#include "core/order.hpp"
 
 namespace bernal {
 namespace {
@@ -205,9 +205,7 @@ void Crowd<Ground>::drop_last_dealing(double most) {
   ground_.read_places(spheres_);
   std::vector<bool> emptied(size(), false);
   for (const std::uint32_t i : most_squeezed(count)) emptied[i] = true;
-  std::vector<std::uint32_t> ascending(size());
-  std::iota(ascending.begin(), ascending.end(), 0u);
-  std::ranges::stable_sort(ascending, {}, [&](std::uint32_t i) { return spheres_.r[i]; });
+  const std::vector<std::uint32_t> ascending = smallest_first(spheres_.r);
   Spheres<D> left = spheres_;
   left.resize(size() - count);
   for (auto place = ascending.begin(); const std::uint32_t i : ascending) {
@@ -221,9 +219,7 @@ void Crowd<Ground>::drop_last_dealing(double most) {
 template <class Ground>
 bool Crowd<Ground>::add(std::span<const double> radii, Random& random) {
   ground_.read_places(spheres_);
-  std::vector<std::size_t> order(radii.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return radii[i]; });
+  const std::vector<std::uint32_t> order = largest_first(radii);
   std::vector<double> descending;
   for (const std::size_t i : order) descending.push_back(radii[i]);
   const std::vector<Vector<D>> holes = ground_.holes_for(descending, spheres_, random);

@@ -7,6 +7,7 @@
 
 #include "bernal/core/error.hpp"
 #include "core/every_dimension.hpp"
+#include "core/order.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/holes.hpp"
 
@@ -48,7 +49,7 @@ void ContainerGround::place(const Spheres<3>& spheres) {
 }
 
 void ContainerGround::move_to_holes(Spheres<3>& spheres, std::vector<std::uint32_t> ids, Random& random) {
-  std::ranges::stable_sort(ids, std::greater<>(), [&](std::uint32_t i) { return spheres.r[i]; });
+  sort_largest_first(ids, spheres.r);
   std::vector<double> radii;
   for (const std::uint32_t i : ids) radii.push_back(spheres.r[i]);
   const std::vector<Vector<3>> holes = holes_for(radii, spheres, random);

@@ -1,8 +1,6 @@
 #include "soft/group_lists.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace bernal {
 namespace {

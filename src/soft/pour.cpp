@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -57,6 +56,13 @@ void take_over(SpheresInBed& in_bed, const Bed& other, TagOf&& tag_of, std::vect
     if (placed[tag]) in_bed.bed().insert(other[i].center, other[i].r, tag);
   }
   in_bed.supply->set_placed(placed);
+}
+
+/// Of spheres that were stopped while they still overlapped.
+void keep_what_fits(SpheresInBed& in_bed) {
+  Spheres<3> spheres = in_bed.crowded_start;
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) spheres.r[i] = in_bed.supply->radius(i);
+  in_bed.put_in_bed(spheres);
 }
 
 }  // namespace
@@ -128,9 +134,14 @@ StageEnd pour(SpheresInBed& in_bed, Reporter& report, const BedTop& top,
     now.crowded_start = poured ? std::move(poured->crowded_start) : in_bed.crowded_start;
     if (poured) take_over(now, poured->bed(), std::identity(), {});
     poured.emplace(std::move(now));
-    if (how.taps > 0 && how.finds_room) tap(*poured, of_part, how.taps, how.first_tap);
-    end = relax_in_container({.patience = how.taps > 0 ? patience_with_tapped : Relax{}.patience}, *poured,
-                             of_part);
+    try {
+      if (how.taps > 0 && how.finds_room) tap(*poured, of_part, how.taps, how.first_tap);
+      end = relax_in_container({.patience = how.taps > 0 ? patience_with_tapped : Relax{}.patience}, *poured,
+                               of_part);
+    } catch (const Cancelled&) {
+      end = StageEnd::cancelled;
+      if (poured->bed().size() == 0) keep_what_fits(*poured);
+    }
     how.finds_room = how.finds_room && end != StageEnd::full;
     if (to_the_brim || given > 0 || part.target.is_open()) break;
     // What fits only touching both the level and walls is squeezed in: the level is too low.

@@ -15,11 +15,9 @@
 #include "soft/ground.hpp"
 #include "soft/growing_box.hpp"
 #include "soft/relax_wide.hpp"
-#include "soft/size_exchange.hpp"
 #include "soft/soft_engine.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/random_insertion.hpp"
-#include "work/stage_entry.hpp"
 
 namespace bernal {
 namespace {
@@ -143,7 +141,8 @@ bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Sp
 /// are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists included; 0.07 µs in four
 /// dimensions and 0.13 µs in eight, lists not included.
 template <int D>
-StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report, const Relax& options, double overlap) {
+StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
+                    const Relax& options, double overlap) {
   const GrowingBox box{.stop = least_overlap(options, in_box.task.allowed_overlap),
                        .sweeps = sweeps_a_cycle(options, std::min(spheres.size(), enough_for_sweeps)),
                        .beta = options.beta};
@@ -164,8 +163,8 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box,
 
 /// `overlap` is the largest overlap ratio at the start, where it is known.
 template <int D>
-StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report, const Relax& options,
-                    std::optional<double> overlap = {}) {
+StageEnd push_apart(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
+                    const Relax& options, std::optional<double> overlap = {}) {
   have_places(spheres);
   if constexpr (D == 2 || D == 3)
     if (is_for_wide_sizes(in_box.task.fill_task, options))

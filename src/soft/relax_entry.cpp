@@ -1,11 +1,8 @@
-#include <algorithm>
 #include <vector>
 
-#include "bernal/core/error.hpp"
 #include "jam/polish.hpp"
 #include "soft/ground.hpp"
 #include "soft/relax.hpp"
-#include "soft/relax_wide.hpp"
 #include "soft/size_exchange.hpp"
 #include "work/stage_entry.hpp"
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "core/order.hpp"
 #include "near/cell_grid.hpp"
 #include "soft/growing_box.hpp"
 #include "soft/relax.hpp"
@@ -232,9 +232,7 @@ StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, const S
                             Reporter& report, const Relax& options) {
   Random random = report.random(Stream::relax);
   const std::size_t count = spheres.size();
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return spheres.r[i]; });
+  const std::vector<std::uint32_t> order = largest_first(spheres.r);
   Spheres<D> descending;
   for (const std::size_t i : order) descending.push_back(Vector<D>::Zero(), spheres.r[i]);
 
@@ -266,7 +264,8 @@ template <int D>
 StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
                     const Relax& options, double overlap, double before) {
   SoftPacking packing(spheres, edges, soft_kernels().front(), true);
-  const GrowingBox box = box_of_wide(options, spheres.size(), least_overlap(options, in_box.task.allowed_overlap));
+  const GrowingBox box =
+      box_of_wide(options, spheres.size(), least_overlap(options, in_box.task.allowed_overlap));
   return let_box_grow<D>(packing, spheres, edges, in_box, report, box, {.molr = overlap}, before,
                          overlap_by_means<D>(spheres.r));
 }

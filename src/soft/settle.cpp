@@ -1,7 +1,6 @@
 #include "bernal/soft/settle.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>

@@ -6,9 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "settle/roll_to_rest.hpp"
 #include "soft/bed_density.hpp"
-#include "soft/tap.hpp"
 
 namespace bernal {
 namespace {
@@ -192,6 +190,7 @@ void tell_density(const SpheresInBed& in_bed, Reporter& report, const BedTarget&
   const auto porosity = porosity_of(in_bed.bed(), heights, top);
   if (!porosity) return;  // of a few spheres on a floor there is none
   if (in_bed.supply->drawn(0) < in_bed.supply->radius(0)) return;  // nor of spheres with their coats
+  report.bed_porosity = porosity->whole;
   report.account = fmt::format("the bed has a porosity of {:.3f}", porosity->whole);
   if (target.density) report.account += fmt::format(", far from floor and top {:.3f}", porosity->core);
   if (target.density == BedTarget::Density::poured && across.is_column && across.diameters > 1.5 &&

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/order.hpp"
+
 namespace bernal {
 namespace {
 
@@ -39,13 +41,12 @@ std::uint32_t ordered(float value) {
 
 }  // namespace
 
-SizeExchange::SizeExchange(const std::vector<double>& radii, int dimension) : ascending_(radii.size()) {
+SizeExchange::SizeExchange(const std::vector<double>& radii, int dimension)
+    : ascending_(smallest_first(radii)) {
   for (const double r : radii) {
     log_radii_.push_back(static_cast<float>(std::log(r)));
     inverse_areas_.push_back(static_cast<float>(std::pow(r, 1 - dimension)));
   }
-  std::iota(ascending_.begin(), ascending_.end(), 0u);
-  std::ranges::stable_sort(ascending_, {}, [&](std::uint32_t i) { return radii[i]; });
   spread_ = std::sqrt(variance_of_groups(radii, ascending_));
 }
 

@@ -2,10 +2,6 @@
 
 #include <immintrin.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
 #include <vector>
 
 #include "core/instruction_sets.hpp"

@@ -1,7 +1,5 @@
 #include "soft/soft_packing.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 

@@ -1,8 +1,6 @@
 #include "soft/soft_walls.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 
 #include "core/parallel.hpp"
 

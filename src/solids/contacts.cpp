@@ -10,7 +10,6 @@
 #include "bernal/core/text.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "core/parallel.hpp"
 #include "measure/touching.hpp"
 
 namespace bernal {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "core/order.hpp"
 #include "geometry/measures.hpp"
 #include "geometry/topology.hpp"
 
@@ -44,16 +44,13 @@ double area_around(const Mesh& mesh, const std::vector<std::uint32_t>& loop, con
 
 std::vector<FlatFace> flat_faces_of(const Mesh& mesh, double tolerance) {
   const MeshTopology topology = topology_of(mesh);
-  std::vector<std::uint32_t> order(mesh.triangles.size());
-  std::iota(order.begin(), order.end(), 0u);
   std::vector<double> area;
-  for (std::size_t t = 0; t < order.size(); ++t) area.push_back(doubled_area(mesh, mesh.triangles[t]).norm());
-  std::ranges::stable_sort(order, [&](auto a, auto b) { return area[a] > area[b]; });
+  for (const auto& triangle : mesh.triangles) area.push_back(doubled_area(mesh, triangle).norm());
 
   std::vector<std::uint32_t> group(mesh.triangles.size(), no_index);
   std::vector<FlatFace> faces;
   std::uint32_t groups = 0;
-  for (const std::uint32_t seed : order) {
+  for (const std::uint32_t seed : largest_first(area)) {
     if (group[seed] != no_index) continue;
     const Vector<3> normal = doubled_area(mesh, mesh.triangles[seed]).normalized();
     const Vector<3> origin = mesh.vertices[mesh.triangles[seed][0]];

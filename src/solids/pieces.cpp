@@ -1,7 +1,6 @@
 #include "solids/pieces.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace bernal {
 namespace {

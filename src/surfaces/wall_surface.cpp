@@ -5,9 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "cad/read/triangulate.hpp"

@@ -1,7 +1,6 @@
 #include "sweep/axes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>

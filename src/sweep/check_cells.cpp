@@ -24,7 +24,7 @@ class BuiltCells {
     bool is_new = std::exchange(is_first_, false);
     for (std::size_t k = 0; k < keys_.size(); ++k)
       if (keys_[k] != "seed") is_new |= values_.emplace(k, cell.values[k]).second;
-    if (!is_new || !std::holds_alternative<MeshFile>(cell.scene.container)) return is_new;
+    if (!is_new || cell.scene.container.meshes().empty()) return is_new;
     Scene alone;
     alone.container = cell.scene.container;
     return containers_.insert(scene_as_toml(alone)).second;

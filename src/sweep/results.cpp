@@ -1,8 +1,6 @@
 #include "sweep/results.hpp"
 
 #include <algorithm>
-#include <array>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

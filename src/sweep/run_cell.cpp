@@ -1,5 +1,4 @@
 #include <new>
-#include <optional>
 
 #include <fmt/format.h>
 

@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <deque>
 #include <fstream>
-#include <list>
 #include <string>
 #include <thread>
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <map>
 
 #include <fmt/format.h>
@@ -125,10 +124,8 @@ std::string Sweep::Read::hash_of(const Scene& whole) {
     of = digest_of_part(where_it_stands(spheres_file_in(of))) +
          digest_of_part(where_it_stands(of / "scene.toml"));
   };
-  if (auto* mesh = std::get_if<MeshFile>(&named.container)) {
-    by_bytes(mesh->file);
-    for (fs::path& obstacle : mesh->obstacles) by_bytes(obstacle);
-  }
+  for (MeshFile* mesh : named.container.meshes())
+    for (fs::path* part : mesh->files()) by_bytes(*part);
   if (named.start.file) by_bytes(*named.start.file);
   return digest_of("bernal cell 1\n" + scene_as_toml(named));
 }

@@ -106,6 +106,8 @@ std::optional<std::string> error_in(const Spheres<dynamic>& spheres) {
   return invalid_statement(bad, first, {c.data(), static_cast<std::size_t>(c.size())}, spheres.r[first]);
 }
 
+using NotThreeDimensions = std::integer_sequence<int, 1, 2, 4, 5, 6, 7, 8>;
+
 template <int D, class Space>
 verify::Slabs<D> slabs_of(const Spheres<dynamic>& spheres, const Space& space, std::size_t at_once) {
   return {spheres, space, at_once};
@@ -142,16 +144,35 @@ verify::Tally judge_in(const Space& space, const Source& spheres, const Domain& 
 }
 
 template <class Source>
-verify::Tally judge(const Source& spheres, const Domain& domain, const verify::Job& job) {
-  const Vector<dynamic> periods = verify::periods_of(domain);
+verify::Tally judge_in_space(const Source& spheres, const Vector<dynamic>& periods, const Domain& domain,
+                             const verify::Job& job) {
   const bool repeats = (periods.array() < verify::Box<1>::infinity).any();
-  if (!repeats && periods.size() == 3) return judge_in<3>(verify::OpenSpace<3>(), spheres, domain, job);
+  if (!repeats) return judge_in<3>(verify::OpenSpace<3>(), spheres, domain, job);
+  return judge_in<3>(verify::PeriodicSpace<3>{periods}, spheres, domain, job);
+}
+
+verify::Tally judge(const SphereRows& spheres, const Domain& domain, const verify::Job& job) {
+  const Vector<dynamic> periods = verify::periods_of(domain);
+  if (periods.size() == 3) return judge_in_space(spheres, periods, domain, job);
   std::optional<verify::Tally> tally;
-  with_dimension(static_cast<int>(periods.size()), EveryDimension{}, [&](auto dimension) {
+  with_dimension(static_cast<int>(periods.size()), NotThreeDimensions{}, [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     tally = judge_in<D>(verify::PeriodicSpace<D>{periods}, spheres, domain, job);
   });
   return *std::move(tally);
+}
+
+/// In other than three dimensions as rows, so that one kind of slabs is enough there.
+verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, const verify::Job& job) {
+  const int dimension = spheres.dimension();
+  if (dimension == 3) return judge_in_space(spheres, verify::periods_of(domain), domain, job);
+  const auto read = [&](std::uint64_t first, std::span<double> rows) {
+    for (std::size_t at = 0; at < rows.size(); ++first) {
+      for (const std::vector<double>& column : spheres.x) rows[at++] = column[first];
+      rows[at++] = spheres.r[first];
+    }
+  };
+  return judge(SphereRows{spheres.size(), dimension, read}, domain, job);
 }
 
 /// "1,200 spheres, 7,000 near pairs and 7,200 walls decided exactly, no overlap, no protrusion"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "bernal/scene/sphere_classes.hpp"
 #include "measure/neighbourhoods.hpp"
 
 namespace bernal {
@@ -48,6 +49,11 @@ std::vector<ViewColumn> view_columns(const Packing& packing, const Measurements*
   if (has_walls(packing.domain))
     columns.push_back({"wall", "distance from the wall", Kind::length,
                        all_single(wall_gaps(packing.spheres, packing.domain, of, packing.container))});
+  if (!packing.classes.empty() && classes_of(packing.scene).size() > 1) {
+    std::vector<float> number;  // from 1
+    for (const std::uint32_t i : of) number.push_back(static_cast<float>(packing.classes[i] + 1));
+    columns.push_back({"class", "class", Kind::category, std::move(number)});
+  }
   if (measured && measured->chambers && measured->chambers->chambers.size() > 1) {
     std::vector<float> chamber;  // `none` becomes 0
     for (const std::uint32_t i : of)

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bernal/core/boundary.hpp"
-#include "core/every_dimension.hpp"
 #include "domain/dyadic.hpp"
 #include "work/free_of_overlap.hpp"
 

@@ -1,12 +1,11 @@
 #include "work/free_of_overlap.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <numeric>
 
 #include "bernal/core/boundary.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "core/every_dimension.hpp"
+#include "core/order.hpp"
 #include "core/parallel.hpp"
 #include "domain/dyadic.hpp"
 #include "near/cell_grid.hpp"
@@ -35,11 +34,8 @@ template <int D, class Reach, class Visit>
 void for_each_pair(const Spheres<D>& spheres, const Vector<D>& edges, Reach&& reach, Visit&& visit) {
   const Boundary<D> boundary{edges};
   const auto [smallest, largest] = std::ranges::minmax(spheres.r);
-  std::vector<std::uint32_t> order(spheres.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::stable_sort(order, std::greater<>(), [&](auto i) { return spheres.r[i]; });
   CellGrid<D> grid(boundary, smallest, largest, spheres.size());
-  for (const std::uint32_t i : order) {
+  for (const std::uint32_t i : largest_first(spheres.r)) {
     const Vector<D> c = spheres.center(i);
     grid.for_each_near(c, reach(spheres.r[i], largest),
                        [&](std::uint32_t j) { visit(i, j, boundary.minimum_image(c - spheres.center(j))); });

@@ -1,13 +1,12 @@
 #include "work/holes.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "bernal/core/boundary.hpp"
 #include "core/every_dimension.hpp"
+#include "core/order.hpp"
 #include "core/parallel.hpp"
 #include "near/counting_sort.hpp"
 
@@ -213,18 +212,15 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
   const Boundary<D> boundary{edges};
   const Bounds<D> box{Vector<D>::Zero(), edges};
   const auto [least, most] = std::ranges::minmax(spheres.r);
-  std::ranges::stable_sort(ids, std::greater<>(), [&](auto i) { return spheres.r[i]; });
+  sort_largest_first(ids, spheres.r);
   std::vector<bool> moves(spheres.size(), false);
   for (const std::uint32_t i : ids) moves[i] = true;
   CellGrid<D> grid(boundary, least, most, spheres.size());
   for (std::uint32_t i = 0; i < spheres.size(); ++i)
     if (!moves[i]) grid.insert(i, spheres.center(i), spheres.r[i]);
 
-  struct Probe {
-    Vector<D> place;
-    double room;
-  };
-  std::vector<Probe> holes;
+  std::vector<Vector<D>> places;
+  std::vector<double> rooms;
   const auto probes =
       static_cast<std::size_t>(least_probes + probes_a_sphere * static_cast<double>(spheres.size()));
   for (std::size_t n = 0; n < probes; ++n) {
@@ -232,23 +228,23 @@ void move_to_holes(Spheres<D>& spheres, const Vector<D>& edges, std::vector<std:
     double room = most;
     for (int k = 0; k < D && !walls.empty(); ++k)
       if (walls[static_cast<std::size_t>(k)]) room = std::min({room, p[k], edges[k] - p[k]});
-    const double between = room_between_spheres(grid, p, -most, room, 0, [&](std::uint32_t j) {
+    places.push_back(p);
+    rooms.push_back(room_between_spheres(grid, p, -most, room, 0, [&](std::uint32_t j) {
       return Nearby{boundary.minimum_image(spheres.center(j) - p).squaredNorm(), spheres.r[j]};
-    });
-    holes.push_back({p, between});
+    }));
   }
-  std::ranges::stable_sort(holes, std::greater<>(), &Probe::room);
-  auto hole = holes.begin();
+  const std::vector<std::uint32_t> roomiest_first = largest_first(rooms);
+  auto hole = roomiest_first.begin();
   for (const std::uint32_t i : ids) {
     const double r = spheres.r[i], apart = 0.5 * (r + least);
     const auto taken = [&] {
-      return grid.any_near(hole->place, r, [&](std::uint32_t j) {
-        return moves[j] &&
-               boundary.minimum_image(hole->place - spheres.center(j)).squaredNorm() < apart * apart;
+      const Vector<D>& place = places[*hole];
+      return grid.any_near(place, r, [&](std::uint32_t j) {
+        return moves[j] && boundary.minimum_image(place - spheres.center(j)).squaredNorm() < apart * apart;
       });
     };
-    while (hole != holes.end() && taken()) ++hole;
-    spheres.set_center(i, hole != holes.end() ? (hole++)->place : uniform_point(random, box));
+    while (hole != roomiest_first.end() && taken()) ++hole;
+    spheres.set_center(i, hole != roomiest_first.end() ? places[*hole++] : uniform_point(random, box));
     grid.insert(i, spheres.center(i), r);
   }
 }

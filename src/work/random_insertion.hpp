@@ -8,6 +8,7 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/core/spheres.hpp"
+#include "core/order.hpp"
 #include "near/cell_grid.hpp"
 
 namespace bernal {
@@ -27,25 +28,12 @@ std::optional<std::invoke_result_t<Draw>> find_place(double trials, Draw&& draw,
 
 /// Gives every sphere, or all from one on, a place anywhere in a box.
 template <int D>
-void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random& random, std::size_t first = 0) {
-  const Bounds<D> box{Vector<D>::Zero(), edges};
-  for (std::size_t i = first; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
-}
+void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random& random, std::size_t first = 0);
 
 /// Moves every sphere by `length` in a direction of its own; `walls` of the box stop its centre.
 template <int D>
 void displace_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
-                        double length, Random& random) {
-  Boundary<D> boundary{edges};
-  for (std::size_t k = 0; k < walls.size(); ++k)
-    if (walls[k]) boundary.edges[static_cast<int>(k)] = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    Vector<D> c = boundary.wrap(spheres.center(i) + length * uniform_direction<D>(random));
-    for (int k = 0; k < D; ++k)
-      if (!boundary.repeats(k)) c[k] = std::clamp(c[k], 0.0, edges[k]);
-    spheres.set_center(i, c);
-  }
-}
+                        double length, Random& random);
 
 /// Random sequential insertion of the spheres that are not `placed`, the largest first and all with the share
 /// `size` of their radii: each at the first of the places draw(r) that overlaps none before it and
@@ -65,7 +53,7 @@ bool insert_at_random(Spheres<D>& spheres, const std::vector<bool>& placed, doub
     else
       order.push_back(i);
   }
-  std::ranges::stable_sort(order, [&](auto i, auto j) { return spheres.r[i] > spheres.r[j]; });
+  sort_largest_first(order, spheres.r);
   for (const std::uint32_t i : order) {
     const double r = size * spheres.r[i];
     const auto is_free = [&](const Vector<D>& c) {

@@ -48,6 +48,7 @@ struct Reporter {
   std::string account = {};
   /// What a stage was to do beside placing spheres, and did not: a sentence; empty where there is nothing.
   std::string missed = {};
+  std::optional<double> bed_porosity = {};  ///< up to its surface, by the stage that laid it
 
   /// At a safe point of a stage, within a `Resumable`: see `Checkpoints::stop`.
   bool stop() { return checkpoints ? checkpoints->stop() : monitor.stop(); }
@@ -85,7 +86,7 @@ struct Reporter {
   }
 
   /// What a stage leaves to the next.
-  void archive(Archive& a) { a(account, missed, streams_used); }
+  void archive(Archive& a) { a(account, missed, bed_porosity, streams_used); }
 };
 
 /// The state of a stage, or of what it does, while this lives: see `Checkpoints::Part`. In a run without

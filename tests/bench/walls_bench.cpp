@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <utility>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/random.hpp"

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "check.hpp"
 #include "support/scenes.hpp"
 

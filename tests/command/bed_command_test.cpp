@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "check.hpp"
 
 // What the command tells of a bed: its height, its porosity, and which spheres do not rest.
@@ -130,6 +128,9 @@ TEST_F(BedCommand, ShowsTheWayToJudgeAPackingOfOthers) {
   EXPECT_EQ(judged.status, 0) << judged.out;
   expect_in(judged.out, {"settled    every sphere rests"});
   EXPECT_EQ(report_of(out).at("bed").at("unsettled"), 0);
+  // Three cover some 60 % of the floor.
+  expect_in(text_of(folder / "out/report.html"),
+            {"covers less than 95 % of the cross-section and so has no level", "of the whole container"});
 }
 
 TEST_F(BedCommand, RefusesWhatItCannotJudgeInOneLine) {

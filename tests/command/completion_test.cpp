@@ -1,5 +1,4 @@
 // What bash and zsh offer: the scripts are asked as the shells ask them.
-#include <algorithm>
 #include <set>
 #include <sstream>
 

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "check.hpp"
 
 namespace bernal::testing {

@@ -3,7 +3,6 @@
 #include <fstream>
 #include <memory>
 #include <regex>
-#include <set>
 
 #include "bernal/formats/export.hpp"
 #include "check.hpp"

@@ -1,6 +1,5 @@
 // The pages of the manual, which are made from what --help is made of.
 #include <algorithm>
-#include <sstream>
 
 #include "command_tree.hpp"
 

@@ -51,6 +51,18 @@ TEST(Pack, WritesEveryFileOfTheContract) {
     EXPECT_NE(packed.err.find(word), std::string::npos) << word << "\nis not in:\n" << packed.err;
 }
 
+TEST(Pack, SaysOnceHowTheSceneIsUnderstood) {
+  const Folder folder;
+  const Ended packed =
+      bernal({"pack", folder.write("scene.toml", small_scene).string(), "-o", (folder / "out").string()});
+  const std::string note = "note       300 spheres will float in the container";
+  ASSERT_NE(packed.err.find(note), std::string::npos) << packed.err;
+  EXPECT_EQ(packed.err.find(note), packed.err.rfind(note));
+  const Ended explained = bernal({"explain", (folder / "scene.toml").string()});
+  EXPECT_NE(explained.out.find(note), std::string::npos) << explained.out;
+  EXPECT_EQ(report_of(folder / "out")["notes"].size(), 1U);
+}
+
 // A name may hold what moves a terminal's cursor or turns the direction of writing.
 TEST(Pack, TheNameOfAMeshReachesNoTerminalAndNoPageRaw) {
   const Folder folder;
@@ -122,6 +134,17 @@ TEST(Pack, AMeshTakesCountFillRadiusCapAndItsOwnUnit) {
   EXPECT_EQ(bernal_in(folder, "pack " + flags + " --diameter 5 --fill --quiet -o filled").status, 0);
   EXPECT_NE(text_of(folder / "filled/scene.toml").find("fill = true"), std::string::npos);
   expect_certified(folder / "filled");
+
+  // Lengths may carry units of their own.
+  const Ended mixed = bernal_in(
+      folder, "explain open.off --unit mm --file-unit in --cap 'z = 0.5 in' --radius '0.1 cm' --count 50");
+  EXPECT_EQ(mixed.out, bernal_in(folder, "explain " + flags + " --radius 1 --count 50").out) << mixed.err;
+  const Ended lognormal = bernal_in(folder, "explain " + flags + " --lognormal '1 phi,0.3 phi' --json");
+  EXPECT_NE(lognormal.out.find("lognormal, median 0.5, sigma 0.2079"), std::string::npos) << lognormal.out;
+  expect_refused_in_one_line(bernal_in(folder, "explain " + flags + " --radius '3 ells'"),
+                             {"--radius must be", "unit \"ells\" is unknown; use one of nm, um, mm"});
+  expect_refused_in_one_line(bernal_in(folder, "explain " + flags + " --diameter 2,5"),
+                             {"--diameter must be", "it has a decimal comma; write a point, \"2.5\""});
 
   // The unit of the file alone is that of all lengths.
   const Ended inches = bernal_in(folder, "explain open.off --file-unit in --cap z=1 --diameter 0.1 --json");

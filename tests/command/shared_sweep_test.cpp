@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
-#include <functional>
 #include <string>
 
 #include "bernal/sweep/sweep.hpp"

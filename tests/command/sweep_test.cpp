@@ -1,7 +1,6 @@
 // bernal sweep as users call it, once.
 #include <algorithm>
 #include <fstream>
-#include <functional>
 #include <string>
 
 #include "swept.hpp"

@@ -13,6 +13,7 @@
 #include "scene/read_spheres.hpp"
 #include "support/folder.hpp"
 #include "support/fuzz.hpp"
+#include "support/written_files.hpp"
 
 namespace bernal {
 namespace csv_fuzz_test {
@@ -49,7 +50,7 @@ bool is_a_packing(const testing::Folder& folder, const std::string& text, bool w
   const SpheresFile read = read_csv(file);
   std::filesystem::remove(file);
   OutputFile again(file);
-  write_csv(again, read.spheres, "mm");
+  write_csv(again, testing::spheres_in(read.spheres));
   again.close();
   EXPECT_EQ(read_csv(file).spheres, read.spheres) << text;
   return true;

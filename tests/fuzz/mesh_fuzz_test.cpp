@@ -3,7 +3,6 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <string_view>

@@ -73,7 +73,7 @@ def blocks_of(lines):
     return blocks
 
 
-PROGRESS = re.compile(r"^ {2,}\d+ s  \S")  # where no terminal is, from two seconds on
+PROGRESS = re.compile(r"^ {2,}\d+ s  \S")  # where no terminal is, every ten seconds
 
 
 def masked(line):

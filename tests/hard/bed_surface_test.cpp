@@ -6,7 +6,6 @@
 #include <numbers>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "bernal/core/error.hpp"
 #include "bernal/measure/rest.hpp"

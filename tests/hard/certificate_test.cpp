@@ -1,8 +1,6 @@
 #include "bernal/verify/certificate.hpp"
 
 #include <cmath>
-#include <limits>
-#include <vector>
 
 #include <gtest/gtest.h>
 

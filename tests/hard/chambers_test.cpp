@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "support/measured.hpp"
 #include "support/meshes.hpp"
 #include "support/packings.hpp"

@@ -14,7 +14,6 @@
 #include "bernal/domain/container.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
-#include "domain/exact_way.hpp"
 #include "domain/free_path.hpp"
 #include "support/containers.hpp"
 #include "support/precise_distance.hpp"

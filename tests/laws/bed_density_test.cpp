@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -12,6 +14,7 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/measure/rest.hpp"
+#include "bernal/verify/certificate.hpp"
 
 #include "settle/roll_to_rest.hpp"
 #include "support/plain_check.hpp"
@@ -24,9 +27,11 @@ namespace bed_density_test {
 
 const Vector<3> down(0, 0, -1);
 
-Packing bed_of(double diameters, int count, const std::string& keys, std::uint64_t seed = 1) {
+Packing bed_of(double diameters, int count, const std::string& keys, std::uint64_t seed = 1,
+               const Monitor& monitor = {}) {
   RunOptions options;
   options.seed = seed;
+  options.monitor = monitor;
   return run(testing::plan_of(fmt::format(
                  "[container]\nkind = \"cylinder\"\nradius = {}\nheight = {}\n[spheres]\ncount = {}\n"
                  "diameter = 1.0\n{}\n[[stage]]\ndo = \"settle\"\n",
@@ -180,6 +185,27 @@ TEST(BedDensity, FrictionHoldsNoSphereBeyondItsAngle) {
                 measure_rest(packing.spheres, packing.domain, down, {.friction = 0.5 * rest.friction})
                     .held_by_friction,
             rest.held_by_friction);
+}
+
+/// However it is laid and wherever it is stopped once its spheres have places, some of them stand there.
+TEST(BedDensity, AStoppedBedKeepsWhatIsThere) {
+  constexpr int count = 200;
+  for (const char* const density : {"bed = \"poured\"", "bed = \"vibrated\"", "porosity = 0.37"}) {
+    std::atomic<int> asked = 0;
+    int most = std::numeric_limits<int>::max();
+    const Monitor monitor{{}, [&] { return ++asked > most; }};
+    EXPECT_NE(bed_of(6, count, density, 1, monitor).outcome, Outcome::cancelled);
+    const int all = asked;
+    ASSERT_GT(all, 3 * count) << density;  // each is asked for once while it is looked for a place
+    for (const double share : {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}) {
+      asked = 0;
+      most = 2 * count + static_cast<int>(share * (all - 2 * count));
+      const Packing packing = bed_of(6, count, density, 1, monitor);
+      EXPECT_EQ(packing.outcome, Outcome::cancelled) << packing.reason;
+      EXPECT_GT(packing.spheres.size(), 0U) << density << ", stopped at " << share;
+      EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
+    }
+  }
 }
 
 }  // namespace bed_density_test

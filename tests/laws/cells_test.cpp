@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/measure/local_packing.hpp"

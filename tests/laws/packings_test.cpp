@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
-#include <limits>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "bernal/core/random.hpp"
 #include "bernal/measure/measure.hpp"
@@ -50,9 +51,7 @@ class EveryPacking : public ::testing::TestWithParam<SceneUnderTest> {};
 INSTANTIATE_TEST_SUITE_P(, EveryPacking, ::testing::ValuesIn(scenes_under_test()),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST_P(EveryPacking, IsCertifiedAndWhatWasAskedFor) {
-  const Plan plan = GetParam().plan();
-  const Packing packing = run_with(plan);
+void expect_certified_and_what_was_asked_for(const Plan& plan, const Packing& packing) {
   expect_certified(packing);
   EXPECT_FALSE(packing.reason.empty());
   const Target& target = plan.scene.target;
@@ -75,23 +74,18 @@ TEST_P(EveryPacking, IsCertifiedAndWhatWasAskedFor) {
   }
 }
 
-TEST_P(EveryPacking, IsAFunctionOfTheSeedAlone) {
-  const Plan plan = GetParam().plan();
-  const std::string hash = hash_of(run_with(plan, 1).spheres);
-  EXPECT_EQ(hash_of(run_with(plan, 2).spheres), hash);
-  RunOptions other;
-  other.threads = 1;
-  other.seed = plan.scene.seed + 1;
-  const Packing of_other_seed = run(plan, other);
-  EXPECT_NE(hash_of(of_other_seed.spheres), hash);
+void expect_another_of_another_seed(const Plan& plan, const Packing& packing) {
+  const Packing of_other_seed = run(plan, {.seed = plan.scene.seed + 1, .threads = 1});
+  EXPECT_NE(hash_of(of_other_seed.spheres), hash_of(packing.spheres));
   EXPECT_EQ(of_other_seed.seed, plan.scene.seed + 1);
 }
 
-// The packer works in a frame whose scale is a power of two, so such a factor leaves it with the same bits.
-TEST_P(EveryPacking, ScalesBitForBitByPowersOfTwo) {
-  const Packing packing = run_with(GetParam().plan());
-  for (const double factor : {0x1p10, 0x1p-20}) {
-    const Packing scaled = run_with(testing::scaled(GetParam().plan(), factor));
+// The packer works in a frame whose scale is a power of two, so such a factor leaves it with the same bits;
+// and so does the number of threads.
+void expect_same_bits_at_powers_of_two_in_threads(const SceneUnderTest& tested, const Packing& packing) {
+  for (const auto& [factor, threads] : {std::pair{0x1p10, 2}, std::pair{0x1p-20, 1}}) {
+    const ::testing::ScopedTrace trace(__FILE__, __LINE__, std::to_string(threads) + " threads");
+    const Packing scaled = run_with(testing::scaled(tested.plan(), factor), threads);
     ASSERT_EQ(scaled.spheres.size(), packing.spheres.size());
     for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
       ASSERT_EQ(scaled.spheres.center(i), factor * packing.spheres.center(i)) << i;
@@ -101,13 +95,13 @@ TEST_P(EveryPacking, ScalesBitForBitByPowersOfTwo) {
   }
 }
 
-TEST_P(EveryPacking, StaysCertifiedAtAnyScaleAndFarAway) {
-  const double size = bounds_of<dynamic>(GetParam().plan().domain).size().norm();
+void expect_certified_at_any_scale_and_far_away(const SceneUnderTest& tested) {
+  const double size = bounds_of<dynamic>(tested.plan().domain).size().norm();
   const Vector<3> far = 1e4 * size * Vector<3>(0.6, -1, 0.3);
-  Plan plans[] = {testing::scaled(GetParam().plan(), 1e-6), testing::scaled(GetParam().plan(), 1e6),
-                  testing::shifted(GetParam().plan(), far)};
-  for (const Plan& plan : plans) {
-    const Packing packing = run_with(plan);
+  Plan plans[] = {testing::scaled(tested.plan(), 1e-6), testing::scaled(tested.plan(), 1e6),
+                  testing::shifted(tested.plan(), far)};
+  for (const Plan& elsewhere : plans) {
+    const Packing packing = run_with(elsewhere);
     EXPECT_GE(packing.spheres.size(), 40u);
     expect_certified(packing);
   }
@@ -115,9 +109,7 @@ TEST_P(EveryPacking, StaysCertifiedAtAnyScaleAndFarAway) {
 
 /// The radii are those that the seed draws, in their order and to the last bit; in a container less those
 /// that found no place: no more than the window of work/supply.hpp holds.
-TEST_P(EveryPacking, HasTheRadiiThatWereDrawn) {
-  const Plan plan = GetParam().plan();
-  const Packing packing = run_with(plan);
+void expect_radii_that_were_drawn(const Plan& plan, const Packing& packing) {
   const double largest = std::ranges::max(packing.spheres.r);
   const bool cut = std::isinf(plan.radii->max());  // then draws beyond the container's room are not asked for
   RadiusSequence sequence(*plan.radii, packing.seed, *plan.scene.draw, plan.start.spheres.r);
@@ -143,16 +135,8 @@ Packing cancelled_after(const Plan& plan, std::size_t k) {
   return packing;
 }
 
-TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
-  const Plan plan = GetParam().plan();
-  std::size_t polls = 0;
-  RunOptions options;
-  options.threads = 1;
-  options.monitor.cancelled = [&] {
-    ++polls;
-    return false;
-  };
-  const std::size_t all = run(plan, options).spheres.size();
+/// `polls`: how often the run to the end asks.
+void expect_whole_where_it_is_cancelled(const Plan& plan, std::size_t all, std::size_t polls) {
   // Before the first sphere, among the first ones, and in the last stage. In a periodic box all spheres are
   // there from the start, and the box becomes as large as it must; relaxation in a container leaves those
   // that touch nothing, and so does filling of a box of given size.
@@ -171,16 +155,6 @@ TEST_P(EveryPacking, ThatIsCancelledIsWholeAsFarAsItGoes) {
   }
 }
 
-TEST(Packing, OfGrowthThatIsStoppedWhileItsSpheresLookForPlacesHasNone) {
-  const Plan plan = plan_of(
-      "[container]\nkind = \"periodic\"\nedge = 1.0\n[spheres]\npacking_fraction = 0.5\nradius = 0.02\n"
-      "[[stage]]\ndo = \"grow\"\nphi_init = 0.32\n");
-  const Packing packing = cancelled_after(plan, 0);
-  EXPECT_EQ(packing.outcome, Outcome::cancelled);
-  EXPECT_EQ(packing.spheres.size(), 0u);
-  expect_certified(packing);
-}
-
 std::set<std::string> effects_of(const Packing& packing) {
   std::set<std::string> names;
   for (const Effect& effect : packing.effects) {
@@ -189,6 +163,44 @@ std::set<std::string> effects_of(const Packing& packing) {
     EXPECT_GT(effect.seconds, 0) << effect.name;
   }
   return names;
+}
+
+void expect_what_the_plan_says_and_nothing_that_it_leaves_out(const Plan& plan, const Packing& packing) {
+  std::set<std::string> planned;
+  for (const PlanItem& item : plan.items) planned.insert(item.name);
+  for (const std::string& name : effects_of(packing)) {
+    EXPECT_TRUE(planned.contains(name)) << name;
+    EXPECT_EQ(std::ranges::count(plan.absent, name), 0) << name;
+  }
+}
+
+// One test a scene, so that it is packed once for all that its laws have in common.
+TEST_P(EveryPacking, KeepsTheLaws) {
+  const Plan plan = GetParam().plan();
+  std::size_t polls = 0;
+  RunOptions options{.threads = 1};
+  options.monitor.cancelled = [&] {
+    ++polls;
+    return false;
+  };
+  const Packing packing = run(plan, options);
+  expect_certified_and_what_was_asked_for(plan, packing);
+  expect_radii_that_were_drawn(plan, packing);
+  expect_what_the_plan_says_and_nothing_that_it_leaves_out(plan, packing);
+  expect_another_of_another_seed(plan, packing);
+  expect_same_bits_at_powers_of_two_in_threads(GetParam(), packing);
+  expect_certified_at_any_scale_and_far_away(GetParam());
+  expect_whole_where_it_is_cancelled(plan, packing.spheres.size(), polls);
+}
+
+TEST(Packing, OfGrowthThatIsStoppedWhileItsSpheresLookForPlacesHasNone) {
+  const Plan plan = plan_of(
+      "[container]\nkind = \"periodic\"\nedge = 1.0\n[spheres]\npacking_fraction = 0.5\nradius = 0.02\n"
+      "[[stage]]\ndo = \"grow\"\nphi_init = 0.32\n");
+  const Packing packing = cancelled_after(plan, 0);
+  EXPECT_EQ(packing.outcome, Outcome::cancelled);
+  EXPECT_EQ(packing.spheres.size(), 0u);
+  expect_certified(packing);
 }
 
 const std::string compressed =
@@ -206,18 +218,6 @@ TEST(Packing, RunsOnlyTheEffectsThatTheSceneCallsFor) {
   const auto relaxed = effects_of(run_with(plan_of(unequal_edges)));
   EXPECT_TRUE(relaxed.contains("relaxation"));
   EXPECT_FALSE(relaxed.contains("walls") || relaxed.contains("insertion") || relaxed.contains("compression"));
-}
-
-TEST(Packing, DoesWhatThePlanSaysAndNothingThatItLeavesOut) {
-  for (const SceneUnderTest& tested : scenes_under_test()) {
-    const Plan plan = tested.plan();
-    std::set<std::string> planned;
-    for (const PlanItem& item : plan.items) planned.insert(item.name);
-    for (const std::string& name : effects_of(run_with(plan))) {
-      EXPECT_TRUE(planned.contains(name)) << tested.name << ": " << name;
-      EXPECT_EQ(std::ranges::count(plan.absent, name), 0) << tested.name << ": " << name;
-    }
-  }
 }
 
 TEST(Packing, ThatReachesItsCountHasConverged) {

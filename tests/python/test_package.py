@@ -24,6 +24,17 @@ def names_of(arguments):
     return [a.arg for a in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs) if a.arg != "self"]
 
 
+class WithoutNumPy(InFolder):
+    def test_one_line_says_what_is_missing(self):
+        tried = subprocess.run(
+            [sys.executable, "-c", "import sys; sys.modules['numpy'] = None; import bernal"],
+            capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(FOLDER.parent)},
+        )  # fmt: skip
+        self.assertNotEqual(tried.returncode, 0)
+        self.assertIn("ModuleNotFoundError: bernal needs NumPy", tried.stderr.splitlines()[-1])
+        self.assertEqual(tried.stderr.count("Error"), 1, tried.stderr)
+
+
 class Stubs(InFolder):
     def setUp(self):
         super().setUp()

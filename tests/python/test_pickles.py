@@ -43,6 +43,9 @@ def packings():
         "arrays in inches": of(bernal.Mesh((np.array(VERTICES) / 20, SQUARES), unit="in")),
         "obstacles": of(bernal.Mesh((VERTICES, SQUARES), unit="mm", obstacles=[(np.array(VERTICES) / 4 + 3, SQUARES)])),
     }
+    scenes["obstacles in a cylinder"] = of(
+        bernal.Cylinder(3, 6, obstacles=[bernal.Sphere(1), (np.array(VERTICES) / 10 + [0.2, 0.3, 4], SQUARES)])
+    )
     all_of = {name: bernal.pack(scene, seed=3) for name, scene in scenes.items()}
     all_of["a start"] = bernal.pack(of(bernal.Cylinder(2, 4), start=all_of["cylinder"], gap=0.01, count=22))
     all_of["imported"] = bernal.from_arrays(np.random.default_rng(1).random((9, 3)), 0.01, unit="m", box=[1, 1, 1])

@@ -72,6 +72,19 @@ class Surfaces(InFolder):
         for two in ([(VERTICES, TRIANGLES)] * 2, [arrays] * 2, (arrays, arrays), [mesh, arrays], [mesh] * 2):
             self.assertEqual(len(bernal.Mesh(HELIX, obstacles=two).obstacles), 2)
 
+    def test_obstacles_are_containers_themselves(self):
+        ball = bernal.Sphere(3, center=[0, 0, 5])
+        column = bernal.Cylinder(10, 20, obstacles=[ball, (np.array(VERTICES) / 2 + [0, 0, 12], TRIANGLES)])
+        packing = bernal.pack(scene_of(HELIX).replace(container=column))
+        self.assertAlmostEqual(packing.volume, np.pi * (100 * 20 - 4 / 3 * 27) - 125, delta=2)
+        self.assertGreaterEqual(np.linalg.norm(packing.centers - [0, 0, 5], axis=1).min(), 3 + 1)
+        self.assertEqual(column.obstacles[0], ball)
+        packing.write("out")
+        again = bernal.read("out").scene.container
+        self.assertEqual([type(each) for each in again.obstacles], [bernal.Sphere, bernal.Mesh])
+        self.assertEqual(again.obstacles[0].radius, 3)
+        self.assertTrue(bernal.verify("out"))
+
     def test_imported_packings_lie_in_them(self):
         scene = scene_of((VERTICES, TRIANGLES), count=None)
         packing = bernal.from_arrays([[5, 5, 5]], 5, unit="mm", container=scene.container)

@@ -19,6 +19,7 @@ GOOD = {
     "axes": ["[2]", "[0, 1]"], "distribution": ["1", '{ distribution = "constant", value = 2 }'],
     "parts": ["[1, 2]", '[{ distribution = "mixture", of = [1, { distribution = "uniform", min = 1, '
               'max = 2 }], shares = [1, 2] }, 3]'],
+    "solids": ['"part.stl"', '["part.stl", "other.stl"]', '[{ kind = "sphere", radius = 1 }, "part.stl"]'],
 }
 BAD = {
     "flag": ["1", '"true"', "[]"], "integer": ['"3"', "1.5", "true", "[1]", "1e31"], "number": ["true", "[1]", "{}"],
@@ -33,6 +34,7 @@ BAD = {
     "distribution": ["0", "-1", '"x"', "[1]", "{}", '{ distribution = "nonsense" }',
                      '{ distribution = "uniform", min = 1 }', '{ distribution = "constant", value = 1, sigma = 1 }'],
     "parts": ["[]", "1", "[0]", '[1, { distribution = "nonsense" }]'],
+    "solids": ["[]", "1", '""', "[1]", '[{ kind = "periodic", edge = 1 }]', '[{ kind = "sphere" }]'],
 }
 
 

@@ -11,6 +11,8 @@
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/domain/container.hpp"
+#include "cad/repair/obstacles.hpp"
+#include "domain/rounded.hpp"
 #include "support/meshes.hpp"
 #include "support/precise_distance.hpp"
 
@@ -28,6 +30,12 @@ struct ContainerUnderTest {
   }
   friend void PrintTo(const ContainerUnderTest& tested, std::ostream* out) { *out << tested.name; }
 };
+
+/// What an obstacle leaves of a solid.
+inline Mesh without(Mesh solid, const Mesh& obstacle) {
+  cad::take_out(solid, obstacle, "it");
+  return solid;
+}
 
 inline ContainerUnderTest localized(std::string name, const Domain& scene) {
   const Frame frame = frame_of(scene);
@@ -57,12 +65,18 @@ inline std::vector<ContainerUnderTest> containers_under_test() {
       localized(
           "ObliqueFlask",
           Revolved{{0, 0, 0}, {1, 1, 3}, {{0, 2}, {0.25, 2}, {0.3, 1.2}, {1, 0.6}, {0.9, 0}, {0, 0.2}}}),
+      localized("RoundedCylinder", rounded(Cylinder{{0, 0, 1}, {1, 2, 0}, 1, 1.5}, 0.4)),
       localized("CubeMesh", box_mesh({0, 0, 0}, {1, 1, 1})),
       localized("PrismMesh", prism_mesh(8, 1, 2)),
       localized("LShapeMeshFarAway", translated(l_shape_mesh(), {1e4, -2e4, 3e4})),
       localized("IcosphereMesh", icosphere_mesh(1, 1)),
       localized("TorusMesh", torus_mesh(1, 0.4, 12, 6, 0.05)),
       localized("HelixMesh", helix_mesh(20, 3)),
+      localized("BoxAroundABarMesh",
+                without(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({-1, 0.3, 0.4}, {3, 0.25, 0.3}))),
+      localized("PrismAroundAPipeMesh",
+                without(prism_mesh(12, 1, 2),
+                        translated(turned(prism_mesh(8, 0.3, 4), {1, 0.2, 0}), {-2, -0.4, 1}))),
       localized("SphereWithCavityMesh", joined(icosphere_mesh(1, 1), inverted(icosphere_mesh(0.5, 0)))),
   };
 }

@@ -37,6 +37,13 @@ inline std::vector<SceneUnderTest> own_scenes() {
   add("ObliqueCylinderFarAway",
       "[container]\nkind = \"cylinder\"\nradius = 2.0\nheight = 5.0\naxis = [1.0, 2.0, 3.0]\n"
       "base = [3000.0, -2000.0, 5000.0]\n[spheres]\nfill = true\nradius = 0.3\n");
+  add("ACylinderAroundAPipe",
+      "[container]\nkind = \"cylinder\"\nradius = 1.0\nheight = 2.0\nobstacles = [{ kind = \"cylinder\", "
+      "radius = 0.3, height = 3.0, axis = [1.0, 0.5, 0.0], base = [-1.5, -0.7, 1.0] }]\n"
+      "[spheres]\ncount = 60\nradius = 0.12\n");
+  add("ABoxWithRoundedEdges",
+      "[container]\nkind = \"box\"\nsize = [1.0, 1.2, 0.8]\nrounding = 0.25\n"
+      "[spheres]\nfill = true\nradius = { distribution = \"uniform\", min = 0.06, max = 0.09 }\n");
   add("Sphere",
       "[container]\nkind = \"sphere\"\nradius = 1.0\n[spheres]\nfill = true\n"
       "radius = { distribution = \"uniform\", min = 0.1, max = 0.2 }\n");

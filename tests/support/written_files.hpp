@@ -20,6 +20,14 @@ inline Packing example(std::uint64_t seed = 1, std::size_t n = 300) {
   return packing_of(scattered(n, 0.1, 0.8, bounds_of(example_box), seed), example_box);
 }
 
+/// Spheres in a unit, of which nothing else is known.
+inline Packing spheres_in(const Spheres<dynamic>& spheres, Unit unit = Unit::mm) {
+  Packing packing;
+  packing.spheres = spheres;
+  packing.scene.unit = unit;
+  return packing;
+}
+
 /// Some spheres of any dimension.
 inline Spheres<dynamic> example_in(int dimension, std::size_t n = 50) {
   Random random(1, stream(Stream::test));

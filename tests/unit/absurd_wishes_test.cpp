@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"

@@ -6,13 +6,17 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/report/json.hpp"
+#include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
+#include "bernal/scene/packing_bytes.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "support/folder.hpp"
 #include "support/scene_texts.hpp"
 
 namespace bernal {
@@ -294,6 +298,87 @@ TEST(Hints, SayHowASceneIsUnderstood) {
   EXPECT_TRUE(has(two(""), "shares 0.3 : 0.7 count spheres; by mass they are 0.0508 : 0.949")) << two("");
   EXPECT_FALSE(has(two(", basis = \"number\""), "count spheres"));
   EXPECT_FALSE(has(two(", basis = \"volume\""), "count spheres"));
+}
+
+/// They stand where they are looked for after the run, too.
+TEST(Hints, AreKeptInTheReport) {
+  const Plan plan = build(scene_of(vessel, "count = 50\ndiameter = 3\nmaterial_density = 2.5"));
+  ASSERT_EQ(plan.hints.size(), 2U) << explain(plan);
+  EXPECT_NE(plan.hints[1].find("\"material_density\" = 2.5 is in kg/m3; write \"2.5 g/cm3\""),
+            std::string::npos)
+      << plan.hints[1];
+  EXPECT_NE(describe(plan).find("note       50 spheres will float"), std::string::npos) << describe(plan);
+  const testing::Folder folder;
+  write_packing(run(plan), folder.path());
+  EXPECT_EQ(nlohmann::json::parse(testing::text_of(folder / "report.json")).at("notes"), plan.hints);
+  const std::string page = testing::text_of(folder / "report.html");
+  EXPECT_NE(page.find("Note: 50 spheres will float"), std::string::npos);
+  EXPECT_EQ(
+      build(scene_of(vessel, "count = 50\nbed = \"poured\"\ndiameter = 3\nmaterial_density = 25")).hints,
+      std::vector<std::string>{});
+}
+
+TEST(BulkDensity, IsGivenBackBesideWhatIsReached) {
+  for (const auto& [container, spheres] :
+       {std::pair(cube, "bulk_density = 1500\n"), std::pair(vessel, "bulk_density = 1450\ncount = 800\n")}) {
+    const Plan plan =
+        build(scene_of(container, std::string(spheres) + "material_density = 2500\ndiameter = 3"));
+    const Packing packing = run(plan);
+    ASSERT_TRUE(packing.bulk_density) << packing.reason;
+    const double asked = container == cube ? 1500 : 1450;
+    EXPECT_EQ(packing.bulk_density->asked, asked);
+    EXPECT_NEAR(packing.bulk_density->reached, asked, 0.005 * 2500) << packing.reason;
+    EXPECT_NE(packing.reason.find(fmt::format("the bulk density is {:.5g} kg/m3, and {} was asked for",
+                                              packing.bulk_density->reached, asked)),
+              std::string::npos)
+        << packing.reason;
+    if (container == cube) EXPECT_DOUBLE_EQ(packing.bulk_density->reached, 2500 * packing.packing_fraction());
+    const testing::Folder folder;
+    write_packing(packing, folder.path());
+    const auto json = nlohmann::json::parse(testing::text_of(folder / "report.json"));
+    EXPECT_EQ(json.at("bulk_density").at("asked"), asked);
+    EXPECT_EQ(json.at("bulk_density").at("reached"), packing.bulk_density->reached);
+    EXPECT_NE(testing::text_of(folder / "report.html").find(fmt::format("{} kg/m³ asked", asked)),
+              std::string::npos);
+    EXPECT_EQ(packing_of_bytes(bytes_of(packing)).bulk_density->reached, packing.bulk_density->reached);
+  }
+}
+
+TEST(BulkDensity, BeyondWhatSpheresReachIsACaution) {
+  const auto caution = [](const std::string& container, const std::string& density) {
+    return build(scene_of(container, density + "diameter = 3")).caution;
+  };
+  const std::string dense = "material_density = 2500\nbulk_density = 1800\n";  // 0.72 of it
+  EXPECT_NE(caution(vessel, dense)
+                .find("a porosity of 0.28 is asked for by the bulk density, and random close "
+                      "packing of these sizes leaves 0.35"),
+            std::string::npos)
+      << caution(vessel, dense);
+  EXPECT_NE(caution(cube, dense).find("a packing fraction of 0.72 is asked for by the bulk density"),
+            std::string::npos)
+      << caution(cube, dense);
+  EXPECT_NE(caution(vessel, "porosity = 0.25\n").find("has more than 0.7405"), std::string::npos);
+  EXPECT_EQ(caution(vessel, "porosity = 0.38\n"), "");
+  EXPECT_EQ(caution(vessel, "material_density = 2500\nbulk_density = 1500\n"), "");
+}
+
+TEST(Densities, InGramsWithoutTheirUnitAreTold) {
+  const std::string spheres = vessel + "[spheres]\ndiameter = 3\n";
+  expect_refused(spheres + "bulk_density = 1.55\nmaterial_density = 2500\n", 8, "write \"1.55 g/cm3\"");
+  expect_refused(spheres + "bulk_density = 1550\nmaterial_density = 2.5\n", 8, "write \"2.5 g/cm3\"");
+  const auto hints = [](const std::string& density, const std::string& of_classes) {
+    return build(
+               scene_of(vessel, "bed = \"poured\"\ncount = 9\n" + density +
+                                    "diameter = { distribution = \"classes\", basis = \"mass\", values = [2, "
+                                    "3], shares = [1, 1]" +
+                                    of_classes + " }"))
+        .hints;
+  };
+  ASSERT_EQ(hints("", ", material_densities = [7.85, 2.5]").size(), 1U);
+  EXPECT_NE(hints("", ", material_densities = [7.85, 2.5]")[0].find("write \"7.85 g/cm3\""),
+            std::string::npos);
+  EXPECT_TRUE(hints("", ", material_densities = [\"7.85 g/cm3\", 2500]").empty());
+  EXPECT_TRUE(hints("material_density = \"2.5 g/cm3\"\n", "").empty());
 }
 
 }  // namespace amounts_test

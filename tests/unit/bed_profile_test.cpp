@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/measure/measure.hpp"

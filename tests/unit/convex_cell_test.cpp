@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "bernal/core/random.hpp"
 
 namespace bernal {

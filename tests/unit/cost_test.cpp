@@ -20,7 +20,6 @@
 #include "cost/front.hpp"
 #include "cost/knobs.hpp"
 #include "cost/rounds.hpp"
-#include "cost/verdict.hpp"
 #include "support/folder.hpp"
 #include "support/outdated_trials.hpp"
 

@@ -19,6 +19,7 @@ namespace csv_test {
 using testing::error_of;
 using testing::example_in;
 using testing::Folder;
+using testing::spheres_in;
 using testing::text_of;
 using testing::written;
 
@@ -56,8 +57,8 @@ TEST(Csv, EveryDoubleComesBackBitForBit) {
     if (c.allFinite() && std::isfinite(r) && r > 0) spheres.push_back(c, r);
   }
   const Folder folder;
-  const SpheresFile back =
-      read_csv(written(folder, "s.csv", [&](OutputFile& file) { write_csv(file, spheres, "um"); }));
+  const SpheresFile back = read_csv(
+      written(folder, "s.csv", [&](OutputFile& file) { write_csv(file, spheres_in(spheres, Unit::um)); }));
   EXPECT_EQ(back.unit, "um");
   ASSERT_EQ(back.spheres.size(), spheres.size());
   const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v); };
@@ -71,8 +72,9 @@ TEST(Csv, IsTheTextThatTheFormatPromises) {
   const Folder folder;
   Spheres<3> spheres;
   spheres.push_back({0.1, -2, 1e-7}, 0.5);
-  EXPECT_EQ(text_of(written(folder, "s.csv", [&](OutputFile& file) { write_csv(file, spheres, "mm"); })),
-            "# unit: mm\nx,y,z,r\n0.1,-2,1e-07,0.5\n");
+  EXPECT_EQ(
+      text_of(written(folder, "s.csv", [&](OutputFile& file) { write_csv(file, spheres_in(spheres)); })),
+      "# unit: mm\nx,y,z,r\n0.1,-2,1e-07,0.5\n");
 }
 
 TEST(Csv, ComesBackInEveryDimension) {
@@ -80,7 +82,7 @@ TEST(Csv, ComesBackInEveryDimension) {
   for (int dimension = 1; dimension <= max_dimension; ++dimension) {
     const Spheres<dynamic> spheres = example_in(dimension);
     const auto file = written(folder, std::to_string(dimension) + ".csv",
-                              [&](OutputFile& out) { write_csv(out, spheres, "mm"); });
+                              [&](OutputFile& out) { write_csv(out, spheres_in(spheres)); });
     EXPECT_EQ(read_csv(file).spheres, spheres) << dimension;
     EXPECT_TRUE(read_csv(folder.write("empty.csv", csv_header(dimension) + "\n")).spheres.empty());
   }

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 
 #include "bernal/core/boundary.hpp"
 #include "bernal/core/error.hpp"

@@ -1,13 +1,10 @@
 // What engines read, and what is made of what they say: without any engine.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <numbers>
 #include <sstream>
-
-#include <fmt/format.h>
 
 #include "bernal/engine/engine_error.hpp"
 #include "engine/engine_command.hpp"

@@ -103,6 +103,24 @@ TEST(ExportSolids, StepIsReadBack) {
     EXPECT_NE(text.find(name), text.npos) << name;
 }
 
+// A ball of 5,120 triangles with a hollow of 1,280 in it: two shells of one solid, which is read back as it
+// was.
+TEST(ExportSolids, AContainerOfManyFacesIsASolid) {
+  const Mesh hollow = test::inverted(test::translated(test::icosphere_mesh(0.4, 3), {0, 0, 3.2}));
+  const Mesh mesh = test::joined(test::icosphere_mesh(4, 4), hollow);
+  const Packing packing = packing_in(mesh, "kind = \"sphere\"\nradius = 4");
+  const Folder folder;
+  const WrittenExport made = written(folder, packing, "step", "a.step");
+  EXPECT_NE(made.note.find("the container is a solid"), made.note.npos) << made.note;
+  MeshFile file;
+  file.file = folder / "a.step";
+  file.solids = {"container"};
+  const MeshReport report = read_mesh(file).report;
+  EXPECT_EQ(report.components, 2U);
+  EXPECT_TRUE(report.usable()) << report.problems.front();
+  EXPECT_NEAR(report.volume / volume_of(mesh), 1, 1e-9);
+}
+
 TEST(ExportSolids, GapsAreForAllFormatsAndCapsForSolids) {
   const Packing packing = periodic();
   const Folder folder;

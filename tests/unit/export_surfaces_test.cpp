@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/formats/export.hpp"

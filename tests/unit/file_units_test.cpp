@@ -7,7 +7,6 @@
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
-#include "cad/read/file_facts.hpp"
 #include "cad/read/polygon_soup.hpp"
 #include "support/cad_formats.hpp"
 #include "support/folder.hpp"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 #include <string>
 
 #include "bernal/cad/read_mesh.hpp"
@@ -178,8 +177,15 @@ TEST_F(Import, EveryHollowOfOneBrim) {
 
 TEST_F(Import, ALevelAboveAClosedPartChangesNothing) {
   MeshFile part = file(box);
+  EXPECT_EQ(container(part).report.cautions, std::vector<std::string>{});
   part.fill_level = 100;
   EXPECT_NEAR(volume(part), 6, 1e-14);
+  part.fill_level.reset();
+  part.cap = {"z = 2", "x = 7"};
+  const MeshReport report = container(part).report;
+  EXPECT_NEAR(report.volume, 4, 1e-14);
+  ASSERT_EQ(report.cautions.size(), 1U);
+  EXPECT_NE(report.cautions[0].find("\"x = 7\" cuts nothing off"), std::string::npos) << report.cautions[0];
 }
 
 TEST_F(Import, ACupWithARoundBrim) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "plan/stages.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/toml_text.hpp"

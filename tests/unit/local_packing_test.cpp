@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <numeric>
 
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"

@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -28,6 +26,7 @@ using testing::error_of;
 using testing::example;
 using testing::example_in;
 using testing::Folder;
+using testing::spheres_in;
 using testing::text_of;
 
 std::string header(const std::string& dictionary, int version = 1) {
@@ -80,27 +79,27 @@ TEST(Npy, HoldsEveryDoubleToTheBit) {
     spheres.x[0][2] = std::nextafter(1.0, 2.0);
     spheres.r[3] = std::numeric_limits<double>::max();
     spheres.r[4] = std::numeric_limits<double>::denorm_min();
-    write_spheres(folder / "s.npy", spheres, "mm", true);
+    write_spheres(folder / "s.npy", spheres_in(spheres), true);
     const Spheres<dynamic> back = read_npy_spheres(folder / "s.npy");
     EXPECT_EQ(back, spheres);
     EXPECT_TRUE(std::signbit(back.x[0][0]));
-    EXPECT_NO_THROW(require_written(folder / "s.npy", spheres, "mm", true));
+    EXPECT_NO_THROW(require_written(folder / "s.npy", spheres_in(spheres), true));
     spheres.x[0][0] = 0.0;  // equal, and other bits
-    EXPECT_EQ(error_of([&] { require_written(folder / "s.npy", spheres, "mm", true); }).code(),
+    EXPECT_EQ(error_of([&] { require_written(folder / "s.npy", spheres_in(spheres), true); }).code(),
               ErrorCode::cannot_write);
   }
 }
 
 TEST(Npy, IsWhatNumPyWrites) {
   const Folder folder;
-  write_spheres(folder / "s.npy", two(), "mm", true);
+  write_spheres(folder / "s.npy", spheres_in(two()), true);
   const std::string text = text_of(folder / "s.npy");
   EXPECT_EQ(text.substr(0, 10), std::string("\x93NUMPY\x01\0v\0", 10));
   EXPECT_EQ(text.substr(10, 59), "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 4), }");
   EXPECT_EQ(text.size(), 128 + 64u);
   EXPECT_EQ(text[127], '\n');
   EXPECT_EQ(text.substr(128), bytes_of<double>(rows));
-  write_spheres(folder / "none.npy", Spheres<dynamic>(2), "mm", true);
+  write_spheres(folder / "none.npy", spheres_in(Spheres<dynamic>(2)), true);
   EXPECT_EQ(read_npy_spheres(folder / "none.npy"), Spheres<dynamic>(2));
 }
 

@@ -28,17 +28,14 @@ TEST(SphereTree, FindsWhatBruteForceFinds) {
     const SphereTree<3> tree(spheres, boundary);
     for (int q = 0; q < 500; ++q) {
       const Vector<3> p = uniform_point<3>(random, {-2 * edges, 2 * edges});
-      double power = 1e9, gap = 1e9;
+      double gap = 1e9;
       for (std::size_t i = 0; i < spheres.size(); ++i) {
-        const double squared = boundary.minimum_image(spheres.center(i) - p).squaredNorm(), r = spheres.r[i];
-        power = std::min(power, squared - r * r);
-        gap = std::min(gap, std::sqrt(squared) - r);
+        const double d = boundary.minimum_image(spheres.center(i) - p).norm();
+        gap = std::min(gap, d - spheres.r[i]);
       }
-      const auto nearest = tree.nearest<SphereTree<3>::Power>(p);
-      const double r = tree.radius(nearest.place);
-      EXPECT_NEAR(nearest.value, power, 1e-12);
-      EXPECT_NEAR((nearest.center - p).squaredNorm() - r * r, power, 1e-12);
-      EXPECT_NEAR(tree.nearest<SphereTree<3>::Gap>(p).value, gap, 1e-12);
+      const auto nearest = tree.nearest(p);
+      EXPECT_NEAR(nearest.gap, gap, 1e-12);
+      EXPECT_NEAR((nearest.center - p).norm() - tree.radius(nearest.place), gap, 1e-12);
     }
   }
 }

@@ -1,8 +1,6 @@
 // packing_fraction = "predicted": the scene leaves it to the prediction how large the box is or how many
 // spheres there are.
-#include <cmath>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "bernal/core/error.hpp"

@@ -5,7 +5,6 @@
 
 #include <numbers>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "support/printed_files.hpp"

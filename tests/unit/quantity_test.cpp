@@ -1,7 +1,6 @@
 #include "bernal/core/quantity.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 

@@ -155,6 +155,29 @@ TEST(RadialDistribution, OfAnIdealGasBetweenWallsIsOne) {
   }
 }
 
+// Nearer than the smallest spheres can come nothing is left to chance, which is else that of one pair.
+TEST(RadialDistribution, IsKnownBelowContact) {
+  const Vector<3> edges = Vector<3>::Constant(12);
+  const Packing apart = testing::simple_cubic(8);
+  const auto hard = radial_distribution(apart);
+  ASSERT_TRUE(hard);
+  for (std::size_t k = 0; k < hard->g.size(); ++k)
+    EXPECT_EQ(hard->error[k] == 0, hard->r[k] < hard->mean_diameter) << hard->r[k];
+
+  Spheres<3> sizes;  // 1 and 2 across: two small ones come as near as 1, of a mean of 1.5
+  for (int k = 0; k < 8; ++k) sizes.push_back({3.0 * (k % 4), 3.0 * (k / 4), 0}, k % 2 == 0 ? 0.5 : 1.0);
+  const auto mixed = radial_distribution(periodic_packing<3>(sizes, edges));
+  ASSERT_TRUE(mixed);
+  for (std::size_t k = 0; k < mixed->g.size(); ++k)
+    EXPECT_EQ(mixed->error[k] == 0, mixed->r[k] + mixed->bin_width / 2 < 1 + 1e-9) << mixed->r[k];
+
+  Packing overlapping = apart;
+  overlapping.spheres.set_center(0, overlapping.spheres.center(1) + Vector<3>(0.5, 0, 0));
+  const auto soft = radial_distribution(overlapping);
+  ASSERT_TRUE(soft);
+  for (const double error : soft->error) EXPECT_GT(error, 0);
+}
+
 TEST(RadialDistribution, OfSpheresAboveTheLevelCountsNone) {
   Spheres<3> spheres;
   spheres.push_back({2, 2, 2}, 0.5);

@@ -1,6 +1,5 @@
 // What OpenCASCADE makes of STEP, IGES and BREP: closed triangles in millimetres, no farther from the true
 // surface than said.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

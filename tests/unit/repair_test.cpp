@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <string>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "bernal/core/error.hpp"
 #include "cad/diagnose/mesh_distance.hpp"
 #include "cad/repair/repair_crossings.hpp"
 #include "cad/repair/repair_holes.hpp"

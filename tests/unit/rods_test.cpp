@@ -2,7 +2,6 @@
 // extended precision, and the numbers that its paper prints with the erf that its paper used.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <random>
 #include <vector>

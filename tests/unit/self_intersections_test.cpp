@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "bernal/core/random.hpp"
 #include "cad/diagnose/self_intersections.hpp"

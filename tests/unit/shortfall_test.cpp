@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "bernal/measure/size_comparison.hpp"
 #include "bernal/predict/predict.hpp"
 #include "bernal/scene/read_scene.hpp"
 

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/boundary.hpp"
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/random.hpp"

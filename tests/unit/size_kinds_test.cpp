@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 
 #include <Eigen/Dense>
 #include <boost/math/special_functions/gamma.hpp>

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <cmath>
-
 #include "bernal/core/boundary.hpp"
 #include "bernal/core/random.hpp"
 #include "soft/soft_packing.hpp"

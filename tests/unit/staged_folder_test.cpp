@@ -7,7 +7,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <map>
 #include <string>
 #include <vector>
 

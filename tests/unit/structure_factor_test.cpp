@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "bernal/measure/radial_distribution.hpp"

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -40,6 +41,28 @@ TEST(ThinContainers, SayNothingOfWhatIsAsked) {
   }
 }
 
+/// A block of 10 x 10 x 10 with a fin 20 long and 1 thick, a sixth of the whole. Spheres of diameter d that
+/// are wider than the fin leave along each edge of the block (1 - pi/4) (d/2)² beside.
+TEST(ThinContainers, SayWhatIsTooNarrowForTheSpheres) {
+  const auto hints = [](double diameter) {
+    return testing::plan_of(
+               "unit = \"mm\"\n[container]\nkind = \"extruded\"\nheight = 10\npolygon = [[0, 0], [10, 0], "
+               "[10, "
+               "4.5], [30, 4.5], [30, 5.5], [10, 5.5], [10, 10], [0, 10]]\n[spheres]\ndiameter = " +
+               std::to_string(diameter))
+        .hints;
+  };
+  for (const double d : {1.2, 2.0}) {
+    const double narrow = 200 + 12 * (1 - std::numbers::pi / 4) * d * d / 4 * 10;
+    ASSERT_EQ(hints(d).size(), 1U) << d;
+    EXPECT_NEAR(std::stod(hints(d)[0].substr(std::string("about ").size())), 100 * narrow / 1200, 1.5)
+        << hints(d)[0];
+    EXPECT_NE(hints(d)[0].find("% of the container is too narrow for even the smallest spheres"),
+              std::string::npos);
+  }
+  EXPECT_TRUE(hints(0.8).empty());
+}
+
 TEST(ThinContainers, EndWithAHintAtFill) {
   const Packing expected = run(plan_in(tin));
   EXPECT_EQ(expected.outcome, Outcome::converged);
@@ -59,6 +82,16 @@ TEST(ThinContainers, AreFilledWhereEverySphereTouchesBothEnds) {
         plan_in(fmt::format("kind = \"cylinder\"\nradius = {}\nheight = 1.0\n", radius), "fill = true\n"));
     EXPECT_GE(packing.spheres.size(), least) << packing.reason;
     EXPECT_TRUE(certify(packing.spheres, packing.domain).certified) << radius;
+  }
+}
+
+/// A sphere as thick as the tube has places whose distance from the axis is a double in four directions only.
+TEST(ThinContainers, ATubeAsThickAsItsSpheresHoldsSome) {
+  for (const char* axis : {"", "axis = [0.0, 2.0, 0.0]\nbase = [5.0, 0.0, -3.0]\n"}) {
+    const Packing packing = run(
+        plan_in(fmt::format("kind = \"tube\"\nradius = 2.5\ninner_radius = 1.5\nheight = 4.0\n{}", axis)));
+    EXPECT_GE(packing.spheres.size(), 4u) << packing.reason;
+    EXPECT_TRUE(certify(packing.spheres, packing.domain).certified) << packing.reason;
   }
 }
 

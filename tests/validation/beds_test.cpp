@@ -8,7 +8,6 @@
 
 #include "bernal/measure/rest.hpp"
 #include "bernal/run/run.hpp"
-#include "bernal/settle/compress.hpp"
 #include "support/plans.hpp"
 
 // High beds, of which the energy above the floor says little: every sphere rests, however high.

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "bernal/measure/contacts.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "support/plans.hpp"

@@ -23,6 +23,10 @@ enum class Quantity {
 /// a number without a unit, an unknown unit, a decimal comma.
 std::optional<double> number_with_unit(std::string_view text, Quantity, Unit unit, std::string& complaint);
 
+/// "z < 5 mm" as "z < 5": the number behind the last sign of a condition, a length that may carry its unit,
+/// as a number in `unit`. As it stands where there is no such length.
+std::string without_unit(const std::string& condition, Unit unit);
+
 /// "25,4 mm" with a point in the place of the comma; nothing where there is no decimal comma.
 std::optional<std::string> without_decimal_comma(std::string_view text);
 

@@ -56,6 +56,12 @@ struct MeshFile {
   /// taken as an OFF file that holds them, and a result has that file beside it.
   std::map<std::filesystem::path, std::shared_ptr<const PolygonSurface>> surfaces = {};
 
+  /// The container's, then those of the obstacles.
+  std::vector<std::filesystem::path*> files() {
+    std::vector<std::filesystem::path*> all{&file};
+    for (std::filesystem::path& obstacle : obstacles) all.push_back(&obstacle);
+    return all;
+  }
   /// Null where the name is that of a file.
   const PolygonSurface* surface_called(const std::filesystem::path& name) const {
     const auto found = surfaces.find(name);

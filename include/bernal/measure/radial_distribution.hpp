@@ -27,6 +27,8 @@ struct RadialDistribution {
   std::vector<double> r;  ///< middle of the bin
   std::vector<double> g;
   /// Standard error of g from counting, that of one pair if none was found; between walls also from `share`.
+  /// 0 in bins below the distance at which two of the smallest spheres touch, where no pair can be; but where
+  /// spheres overlap that far, as elsewhere.
   std::vector<double> error;
   /// Between walls: of the shells about the centres, the mean share that lies in V, and its standard error.
   /// Empty in periodic boxes.

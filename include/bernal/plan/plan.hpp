@@ -21,6 +21,8 @@ struct StartSpheres {
   int first_line = 0;
 };
 
+struct PlannedPart;
+
 /// A scene that has been checked as a whole, with everything it names made and nothing else.
 struct Plan {
   Scene scene;
@@ -50,12 +52,23 @@ struct Plan {
   /// of its largest spheres for that, how many, and how many would do; where a CAD part may not be what is
   /// meant, why; a sentence, or empty.
   std::string caution;
-  /// What `explain` adds: how the scene is understood where it leaves that open, and the line that says
-  /// otherwise; sentences.
+  /// How the scene is understood where it leaves that open, and the line that says otherwise; sentences.
   std::vector<std::string> hints;
   bool places_expected = false;     ///< some stage ends with as many spheres as are expected to fit
   std::vector<PlanItem> items;      ///< what would run, in order
   std::vector<std::string> absent;  ///< effects that the scene does not call for and that are not built
+  /// Of a scene with zones, in the order in which they are packed; else none. What the whole says is then
+  /// their sum.
+  std::vector<PlannedPart> parts;
+};
+
+/// What is packed by itself of a scene with zones: a zone, or a piece of what lies in none.
+struct PlannedPart {
+  Plan plan = {};                            ///< in a domain of its own; of a layer, in all of the container
+  std::uint32_t sphere_class = 0;       ///< of its spheres, see `classes_of`
+  bool on_others = false;               ///< a layer, onto the spheres of those before it
+  std::optional<double> level = {};     ///< where a layer ends: its height above the lowest point
+  Vector<3> shift = Vector<3>::Zero();  ///< from the domain of its plan to the whole: of periodic boxes
 };
 
 /// Completes the scene and makes what it names. Throws Error (bad_scene, bad_mesh) where parts do not fit
@@ -67,7 +80,7 @@ Plan build(const Scene& scene);
 /// stands, even where the packing is to decide how large it becomes and only its proportions matter to
 /// `build`; without a size it is the unit cube. Throws as `build`.
 Domain domain_of(const Scene& scene);
-/// The same, with what the importer did in `notes`, and in `caution` what may not be meant: see
+/// The same, with what the importer and obstacles did in `notes`, and in `caution` what may not be meant: see
 /// `MeshReport::cautions`; the scene then says itself what was left to the file.
 Domain domain_of(Scene& scene, std::string& notes, std::string& caution);
 

@@ -1,6 +1,8 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "bernal/core/spheres.hpp"
 #include "bernal/scene/packing.hpp"
@@ -10,12 +12,20 @@ namespace bernal {
 struct SpheresFile {
   Spheres<dynamic> spheres;
   std::string unit;  ///< of the "# unit: mm" line, "" if there is none
+  /// Where there is a column "class": of each sphere its number among the names, which stand in the order in
+  /// which the file has them.
+  std::vector<std::uint32_t> classes = {};
+  std::vector<std::string> class_names = {};
 };
 
-/// Reads `x,y,z,r` lines (`x0,x1,…,r` in other dimensions than three). Throws Error{bad_packing} with file,
-/// line and what is wrong: header, number of fields, text that is no number, not finite, radius not positive,
-/// truncated last line.
+/// Reads `x,y,z,r` lines (`x0,x1,…,r` in other dimensions than three), with or without `,class,material`.
+/// Throws Error{bad_packing} with file, line and what is wrong: header, number of fields, text that is no
+/// number, not finite, radius not positive, truncated last line.
 SpheresFile read_csv(const std::filesystem::path& file);
+
+/// The classes of a file's spheres as the scene counts them, see `Packing::classes`; empty where the file or
+/// the scene has none. Throws Error{bad_packing} for one that the scene does not have.
+std::vector<std::uint32_t> classes_in(const Scene& scene, const SpheresFile& file);
 
 /// The spheres of a file that are to lie in the scene's domain. Throws as `read_csv`, and Error{bad_packing}
 /// where their unit or dimension is not the scene's.

@@ -85,15 +85,23 @@ struct CheckpointOptions {
 /// the domain.
 struct Packing {
   Spheres<dynamic> spheres;  ///< centres in one period, see `wrap`
+  /// Of each sphere, its place in `classes_of(scene)`; empty where the scene tells no spheres apart.
+  std::vector<std::uint32_t> classes = {};
   Domain domain;
   /// Of the domain, see `Plan::container`, so that measuring need not make it again; may be null.
   std::shared_ptr<const Container> container = {};
   double volume = 0;                     ///< of the domain
   double expected_packing_fraction = 0;  ///< by the plan, before the run
   std::string caution = {};              ///< the plan's
+  std::vector<std::string> hints = {};   ///< the plan's
   /// Random close packing of the very sizes that are there, by the rod model, see `predict_packing_fraction`;
   /// nothing where that says nothing: between walls, in other than three dimensions.
   std::optional<double> expected_of_sizes = {};
+  /// In kg/m³, where the scene asks for one: what was asked, and what is there, of a bed up to its surface.
+  struct BulkDensity {
+    double asked = 0, reached = 0;
+  };
+  std::optional<BulkDensity> bulk_density = {};
   /// All sizes are so many times those that were drawn: in a container `polish` lets them grow until they
   /// jam.
   double size_scale = 1;
@@ -111,8 +119,9 @@ struct Packing {
   double packing_fraction() const;
 };
 
-/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`; nothing
-/// where that is not said, and in other than three dimensions.
+/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`, or where
+/// the scene has zones by those of its classes; nothing where these are not said, and in other than three
+/// dimensions.
 std::optional<double> mass_of(const Packing&, double packing_fraction);
 
 }  // namespace bernal

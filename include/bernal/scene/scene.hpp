@@ -27,6 +27,7 @@
 namespace bernal {
 
 struct Packing;
+struct Zone;
 
 /// A box that repeats itself along every axis but those with walls. By `size` or `edge`; with neither, the
 /// packing decides how large it is.
@@ -43,7 +44,18 @@ struct PeriodicBox {
 struct SceneContainer
     : std::variant<Box, Cylinder, MeshFile, Sphere, PeriodicBox, Polygon, Cone, Tube, Lathed, Extruded> {
   using variant::variant;
+  /// Of a Box of three dimensions or a Cylinder without periods: the radius of its rounded edges, at most
+  /// half of any edge. The walls are those of `rounded`, a mesh or a solid of revolution.
+  double rounding = 0;
+  /// Solids that are taken out of one of three dimensions without periods, none with obstacles of its own.
+  /// What then remains is a mesh, whose flat faces stand for round walls on the inner side of them, see
+  /// `flattened`. Those of a MeshFile that are files, in its unit, may stand in that instead.
+  std::vector<SceneContainer> obstacles = {};
   Locations locations;
+
+  /// Those of it and its obstacles that stand in files.
+  std::vector<MeshFile*> meshes();
+  std::vector<const MeshFile*> meshes() const;
 };
 
 /// Another program that finds the places which the first stage begins with: `scene.engine = Lammps{}`.
@@ -163,7 +175,10 @@ struct Scene {
   /// of the volume; else random.
   std::optional<Draw> draw = {};
   Target target;
+  std::string material = {};                    ///< what the spheres are made of, by name; may be empty
   std::optional<double> material_density = {};  ///< of the spheres, in kg/m³
+  std::vector<Zone>
+      zones;  ///< parts of the container with spheres of their own; without = {}, as Mixture::of
   Start start = {};
   std::optional<SceneEngine> engine = {};
   double gap = 0;       ///< least distance between the surfaces of two spheres, or of one and its own image
@@ -175,7 +190,7 @@ struct Scene {
   std::vector<Output> outputs = {};
   Locations locations;  ///< of what stands in no container, sizes, stage or output
 
-  /// Whether there are sizes to draw from.
+  /// Whether there are sizes to draw from, besides those of zones.
   bool draws() const {
     const auto* constant = std::get_if<Constant>(&sizes);
     return !constant || constant->value != 0;
@@ -187,6 +202,22 @@ struct Scene {
     if (const auto* box = std::get_if<Box>(&container)) return box->dimension();
     return std::holds_alternative<Polygon>(container) ? 2 : 3;
   }
+};
+
+/// A part of the container with sizes, an amount and a material of its own, which nothing mixes with what is
+/// around it. What no zone takes up is for the sizes of the scene, if it has any. Where spheres settle, zones
+/// lie one upon the other: the spheres of each are poured onto those below, up to the level where it ends.
+/// Elsewhere each is packed by itself, between the planes of its place as between walls.
+struct Zone {
+  std::string name = {};  ///< else that of its material, else "zone 2" of the second
+  /// Planes, "z < 20" or "x > 5": the zone lies on that side of each. Of a zone that settles none: it lies on
+  /// the zones that come before it.
+  std::vector<std::string> place = {};
+  std::vector<std::string> solids = {};  ///< of the container's file, by name or by number from 1
+  std::optional<int> chamber = {};       ///< of a mesh of several closed spaces: the first is the largest
+  /// The sizes, the amount, the material: what [spheres] may say, but for gaps, a start and beds.
+  Scene spheres;
+  Locations locations = {};
 };
 
 /// As scenes have them: "double", "filtered", "exact"; "random", "quantiles".

@@ -26,7 +26,6 @@
 #include "cad/opencascade/read_shapes.hpp"
 #include "cad/opencascade/sewing.hpp"
 #include "cad/opencascade/tessellate.hpp"
-#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 
 namespace bernal::cad {

@@ -6,8 +6,6 @@
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
-#include <BRepBuilderAPI_MakeSolid.hxx>
-#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -23,13 +21,14 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
-#include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <algorithm>
 #include <cmath>
+
+#include "cad/opencascade/mesh_solid.hpp"
 
 namespace bernal::cad {
 
@@ -128,36 +127,11 @@ struct ContainerShape {
   }
   TopoDS_Shape operator()(const Mesh& mesh) const {
     if (shapes.faces.empty()) return {};
-    // The module links no code of bernal.
-    Vector<3> lower = mesh.vertices.front(), upper = lower;
-    for (const Vector<3>& v : mesh.vertices) {
-      lower = lower.cwiseMin(v);
-      upper = upper.cwiseMax(v);
-    }
-    BRepBuilderAPI_Sewing sewing(1e-7 * (upper - lower).norm());
-    for (const auto& loops : shapes.faces) {
-      std::vector<TopoDS_Wire> wires;
-      for (const auto& loop : loops) {
-        BRepBuilderAPI_MakePolygon polygon;
-        for (const std::uint32_t corner : loop) polygon.Add(point_at(mesh.vertices[corner]));
-        polygon.Close();
-        wires.push_back(polygon.Wire());
-      }
-      BRepBuilderAPI_MakeFace face(wires.front(), true);
-      for (std::size_t k = 1; k < wires.size(); ++k) face.Add(wires[k]);
-      if (!face.IsDone())
-        throw Failed{
-            "OpenCASCADE makes no face of a flat part of the container; export triangles, such as STL"};
-      sewing.Add(face.Face());
-    }
-    sewing.Perform();
-    TopExp_Explorer shell(sewing.SewedShape(), TopAbs_SHELL);
-    if (!shell.More() || sewing.NbFreeEdges() > 0)
+    const TopoDS_Shape solid = solid_of_mesh(mesh, shapes.faces);
+    if (solid.IsNull())
       throw Failed{
           "OpenCASCADE makes no closed surface of the container's triangles; export triangles, such as STL"};
-    BRepBuilderAPI_MakeSolid solid;
-    for (; shell.More(); shell.Next()) solid.Add(TopoDS::Shell(shell.Current()));
-    return solid.Solid();
+    return solid;
   }
   TopoDS_Shape operator()(const Revolved& revolved) const {
     const gp_Ax2 frame(point_at(revolved.base), direction_of(revolved.axis));

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "bernal/core/text.hpp"
-#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 
 namespace bernal::cad {

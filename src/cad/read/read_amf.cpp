@@ -9,7 +9,6 @@
 #include "cad/diagnose/counted.hpp"
 #include "cad/read/caged_reader.hpp"
 #include "cad/read/file_facts.hpp"
-#include "cad/read/known_formats.hpp"
 #include "cad/read/placed_meshes.hpp"
 #include "cad/read/polygon_soup.hpp"
 #include "cad/read/slicer_parts.hpp"

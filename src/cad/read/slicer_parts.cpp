@@ -6,7 +6,6 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "cad/read/known_formats.hpp"
 #include "cad/read/xml_document.hpp"
 #include "core/lower_case.hpp"
 

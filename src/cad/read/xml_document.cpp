@@ -9,7 +9,6 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "cad/read/known_formats.hpp"
 
 namespace bernal::cad {
 namespace {

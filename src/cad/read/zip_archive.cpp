@@ -11,7 +11,6 @@
 #include <iterator>
 
 #include "bernal/core/error.hpp"
-#include "cad/read/known_formats.hpp"
 #include "core/lower_case.hpp"
 
 namespace bernal::cad {

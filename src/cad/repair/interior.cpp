@@ -33,8 +33,16 @@ std::string text_of(const Vector<3>& p) { return fmt::format("({:g}, {:g}, {:g})
 
 bool is_closed(const Mesh& mesh) { return topology_of(mesh).closed(); }
 
-Mesh cut_by(Mesh mesh, const Planes& planes, double tolerance) {
-  for (const CutPlane& plane : planes) mesh = cut(mesh, plane, tolerance);
+/// `idle`: a caution for each plane that a closed surface lies on one side of, as a whole.
+Mesh cut_by(Mesh mesh, const Planes& planes, double tolerance, std::vector<std::string>* idle = nullptr) {
+  for (const CutPlane& plane : planes) {
+    Mesh rest = cut(mesh, plane, tolerance);
+    if (idle && rest.triangles == mesh.triangles)
+      idle->push_back(fmt::format(
+          "the plane \"{}\" cuts nothing off: the surface is closed, and all of it lies on one side",
+          plane.text));
+    mesh = std::move(rest);
+  }
   return mesh;
 }
 
@@ -314,7 +322,9 @@ ChosenInterior hollow_of(const Mesh& solid, const Planes& planes, double toleran
                     "plane, or move the point",
                     text_of(*point)));
   if (failure && !planes.empty()) throw *failure;
-  refuse("the solid has no void and no hollow that can be recognised; close the one that is meant by \"cap\", a plane");
+  refuse(
+      "the solid has no void and no hollow that can be recognised; close the one that is meant by \"cap\", a "
+      "plane");
 }
 
 /// What a surface encloses on the planes' sides: the first choice of sides that leaves it closed; else the
@@ -325,7 +335,9 @@ ChosenInterior enclosed(const Mesh& surface, const Planes& planes, double tolera
   std::optional<Error> failure;
   for (const Planes& choice : choices_of(planes)) {
     try {
-      ChosenInterior made{cut_by(surface, choice, tolerance), {planes_text(choice)}};
+      std::vector<std::string> idle;
+      Mesh rest = cut_by(surface, choice, tolerance, &idle);
+      ChosenInterior made{std::move(rest), {planes_text(choice)}, std::move(idle)};
       if (is_closed(made.mesh)) return made;
       if (!open) open = std::move(made);
     } catch (const Error& error) {

@@ -1,18 +1,14 @@
 #pragma once
-#include "bernal/domain/domain.hpp"
+#include <string>
+
+#include "bernal/geometry/mesh.hpp"
 
 namespace bernal::cad {
 
-enum class TakenOut {
-  done,
-  outside,   ///< disjoint from the container
-  whole,     ///< nothing of the container remains
-  entangled  ///< the remainder would be joined in edges only, or cannot be computed
-};
-
-/// Subtracts an obstacle from a container; `container` changes only on `done`. Precondition: both closed,
-/// oriented outwards, without self-intersections. Cost: one search for crossings, and 50 µs a face if there
-/// are any.
-TakenOut take_out(Mesh& container, const Mesh& obstacle);
+/// Subtracts an obstacle, which errors call `name`, from a container; its exact corners are dropped.
+/// Precondition: both closed, oriented outwards, without self-intersections. Throws OptionError about
+/// "obstacles" where the obstacle is outside, where nothing remains, or where the remainder would be joined
+/// in edges only or cannot be computed. Cost: one search for crossings, and 50 µs a face if there are any.
+void take_out(Mesh& container, const Mesh& obstacle, const std::string& name);
 
 }  // namespace bernal::cad

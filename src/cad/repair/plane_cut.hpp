@@ -12,7 +12,7 @@ struct CutPlane {
   Vector<3> normal = Vector<3>::UnitZ();
   double offset = 0;
   bool side_is_open = false;  ///< "=": the side that the plane closes
-  std::string text;
+  std::string text = {};
 
   double height(const Vector<3>& p) const { return normal.dot(p) - offset; }
   /// The same plane with the other side kept.

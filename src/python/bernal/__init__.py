@@ -14,6 +14,14 @@ Bad input raises `bernal.Error`, with one line that names the remedy. Lengths ar
 
 from __future__ import annotations
 
+try:
+    import numpy as _numpy
+except ModuleNotFoundError:
+    raise ModuleNotFoundError(
+        "bernal needs NumPy, which is not installed here; install it, such as with pip install numpy", name="numpy"
+    ) from None
+del _numpy
+
 from . import _core, design
 from ._classes import CLASSES, Container, Engine, Output, Sizes, Stage
 from ._errors import EngineError, Error, InputError, KeywordError, WriteError

@@ -76,7 +76,7 @@ def float_of(value: int) -> float:
 
 
 def names_files(key: dict[str, Any]) -> bool:
-    return key["type"] == "file" or key["name"] == "obstacles"
+    return key["type"] in ("file", "solids")
 
 
 def taken(key: dict[str, Any], value: Any) -> Any:
@@ -153,7 +153,7 @@ class Said:
         return type(self)(**{**self._said, **keys})
 
     def _assignments(self) -> list[tuple[str, Any]]:
-        return [(self._selector, self._table["name"]), *self._said.items()]
+        return [*([(self._selector, self._table["name"])] if self._selector else []), *self._said.items()]
 
     def _lines(self) -> str:
         return "".join(_toml.line(key, value) for key, value in self._assignments())
@@ -236,7 +236,8 @@ def _class_of(base: type[Said], table: dict[str, Any], selector: str) -> type[Sa
 
 def _made_classes() -> dict[str, type[Said]]:
     classes: dict[str, type[Said]] = {}
-    for base, name in ((Container, "container"), (Sizes, "diameter"), (Stage, "stage"), (Engine, "engine")):
+    for base, name in ((Container, "container"), (Sizes, "diameter"), (Stage, "stage"), (Engine, "engine"),
+                       (Said, "zone")):  # fmt: skip
         of = group(name)
         for table in of["tables"]:
             each = _class_of(base, table, of["selector"])

@@ -137,6 +137,28 @@ class Packing:
         return self._axis(2, "z")
 
     @cached_property
+    def _classes(self) -> tuple[NDArray[np.uint32], list[tuple[str, str, float | None]]]:
+        classes: tuple[NDArray[np.uint32], list[tuple[str, str, float | None]]] = self._core.classes()
+        classes[0].setflags(write=False)
+        return classes
+
+    @property
+    def classes(self) -> NDArray[np.uint32]:
+        """Of each sphere, the place of its class in `class_names`: its zone, its class of sizes, its material. Empty
+        where the scene tells no spheres apart."""
+        return self._classes[0]
+
+    @property
+    def class_names(self) -> list[str]:
+        """The names of the classes."""
+        return [name for name, _, _ in self._classes[1]]
+
+    @property
+    def materials(self) -> list[str]:
+        """What each class is made of; "" where the scene does not say."""
+        return [material for _, material, _ in self._classes[1]]
+
+    @cached_property
     def centers(self) -> Array:
         """Shape (N, D). A copy, made at the first access and then kept; read-only."""
         centers = np.stack(self.columns, axis=1)

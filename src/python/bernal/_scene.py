@@ -15,7 +15,8 @@ from ._classes import Container, Engine, Output, Said, Sizes, Stage
 # The keys of a scene that are keywords, by their table in a file. Sizes and other tables are parameters.
 _OWN = {table["name"]: [k for k in table["keys"] if k["name"] not in ("radius", "diameter")]
         for table in _classes.group("scene")["tables"]}  # fmt: skip
-_PARTS = ("container", "diameters", "radii", "engine", "stages", "outputs")
+_PARTS = ("container", "diameters", "radii", "zones", "engine", "stages", "outputs")
+_ZONE: Any = _classes.CLASSES["Zone"]
 _KEYS = {key["name"]: key for keys in _OWN.values() for key in keys}
 
 
@@ -31,6 +32,9 @@ class Scene:
     diameters, radii : length, which may be text with its unit, or Sizes
         exactly one of them, so that nobody has to guess: `diameters=2`, `diameters=Lognormal(2, 0.3)` or,
         with a count, `diameters="largest"`.
+    zones : Zone, or several
+        parts of the container with sizes of their own, `Zone(place="z < 20", diameter=1, material="sand")`; what
+        lies in none has the sizes of the scene, if it has any.
     engine : Engine
         another program that places the spheres before the first stage, such as `Lammps(ranks=4)`.
     stages : Stage, or several
@@ -45,6 +49,7 @@ class Scene:
         *,
         diameters: float | str | Sizes | None = None,
         radii: float | str | Sizes | None = None,
+        zones: Said | Iterable[Said] = (),
         engine: Engine | None = None,
         stages: Stage | Iterable[Stage] = (),
         outputs: Output | str | Iterable[Output | str] = (),
@@ -67,6 +72,7 @@ class Scene:
             "container": container,
             "diameters": _toml.plain(diameters),
             "radii": _toml.plain(radii),
+            "zones": _several(zones, _ZONE, "zones"),
             "engine": engine,
             "stages": _several(stages, Stage, "stages"),
             "outputs": tuple(
@@ -107,7 +113,7 @@ class Scene:
         text += "".join(f"\n[{table}]\n{lines}" for table, lines in tables.items())
         if parts["engine"] is not None:
             text += f"\n[engine]\n{parts['engine']._lines()}"
-        for name in ("stage", "output"):
+        for name in ("zone", "stage", "output"):
             text += "".join(f"\n[[{name}]]\n{each._lines()}" for each in parts[name + "s"])
         return text
 
@@ -213,7 +219,8 @@ def _surfaces_of(container: Container) -> list[_surfaces.Surface]:
     """The surfaces from arrays among the container's files."""
     values = [value for name, value in container._said.items() if _classes.names_files(container._key(name))]
     files = [file for value in values for file in (value if isinstance(value, list) else [value])]
-    return [file for file in files if isinstance(file, _surfaces.Surface)]
+    obstacles = [surface for each in files if isinstance(each, Container) for surface in _surfaces_of(each)]
+    return [file for file in files if isinstance(file, _surfaces.Surface)] + obstacles
 
 
 def _with_what_is_given(whole: dict[str, Any], core: Any) -> dict[str, Any]:
@@ -221,9 +228,14 @@ def _with_what_is_given(whole: dict[str, Any], core: Any) -> dict[str, Any]:
     given = {name: _surfaces.Surface(*arrays) for name, arrays in core.surfaces().items()}
     container = whole["container"]
     if given:
-        container["file"] = given.get(container["file"], container["file"])
-    if given and "obstacles" in container:
-        container["obstacles"] = [given.get(each, each) for each in container["obstacles"]]
+        solids = [each for each in container.get("obstacles", []) if isinstance(each, dict)]
+        for solid in [container, *solids]:
+            if "file" in solid:
+                solid["file"] = given.get(solid["file"], solid["file"])
+        if "obstacles" in container:
+            container["obstacles"] = [
+                each if isinstance(each, dict) else given.get(each, each) for each in container["obstacles"]
+            ]
     start = core.start()
     if start is not None:
         from ._packing import Packing
@@ -254,6 +266,11 @@ def _parts_of(said: dict[str, Any], whole: dict[str, Any]) -> dict[str, Any]:
             container[key["name"]] = whole["container"][key["name"]]
     parts: dict[str, Any] = {"container": _chosen("kind", container), "diameters": None, "radii": None}
     parts["engine"] = _chosen("kind", said["engine"]) if "engine" in said else None
+    parts["zones"] = tuple(
+        _classes.made("", "zone", {name: _sizes(whole["zone"][k][name] if _names_a_file(value) else value)
+                                   for name, value in each.items()})  # fmt: skip
+        for k, each in enumerate(said.get("zone", ()))
+    )
     parts["stages"] = tuple(_chosen("do", each) for each in said.get("stage", ()))
     parts["outputs"] = tuple(_chosen("format", each) for each in said.get("output", ()))
     for name, key in (("diameters", "diameter"), ("radii", "radius")):
@@ -280,7 +297,7 @@ def _chosen(selector: str, table: dict[str, Any]) -> Said:
 
 def _sizes(value: Any) -> Any:
     if isinstance(value, dict):
-        return _chosen("distribution", value)
+        return _chosen("kind" if "kind" in value else "distribution", value)
     if isinstance(value, list):
         return [_sizes(each) for each in value]
     return value

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "bernal/core/tolerance.hpp"
 #include "bernal/verify/certificate.hpp"
-#include "core/parallel.hpp"
 #include "domain/exact_analytic.hpp"
 #include "domain/exact_way.hpp"
 #include "domain/free_path.hpp"
+#include "domain/frustum.hpp"
 #include "verify/bounded.hpp"
 #include "verify/exact.hpp"
 #include "verify/predicates.hpp"
@@ -104,34 +105,46 @@ std::vector<AnalyticWall> walls_of_analytic(const Domain& shape) {
       shape);
 }
 
-/// The least gap of the ball after a way of t, in long double; of a mesh where that is nearly contact.
+using Gap = std::function<long double(long double)>;
+
+/// The gap of the ball after a way of t, in long double: a function for each piece of wall; of a mesh for
+/// those that are nearly in contact after a way of `touch`.
+std::vector<Gap> gaps_near(const PricedContainer& container, const Motion& m, double touch) {
+  std::vector<Gap> gaps;
+  if (const auto* solid = std::get_if<Revolved>(&container.shape)) {
+    solid->for_each_edge([&](const Vector<2>& a, const Vector<2>& b) {
+      const FrustumWay way({solid->base, solid->axis, a, b}, m.c, m.direction);
+      gaps.emplace_back([way, r = m.r](long double t) { return way.distance(t) - r; });
+    });
+  } else if (container.is_mesh()) {
+    std::vector<NearFacet> near;
+    container.exact().facets_near(m.c + touch * m.direction, m.r + near_contact, near);
+    for (const NearFacet& n : near)
+      gaps.emplace_back([facet = n.facet, m](long double t) { return gap_after(facet, m, t); });
+  } else {
+    for (const AnalyticWall& wall : walls_of_analytic(container.shape))
+      gaps.emplace_back([wall, m](long double t) { return gap_after(wall, m, t); });
+  }
+  return gaps;
+}
+
 long double least_gap(const PricedContainer& container, const Motion& m, double t) {
   long double least = std::numeric_limits<long double>::infinity();
-  if (!container.is_mesh()) {
-    for (const AnalyticWall& wall : walls_of_analytic(container.shape))
-      least = std::min(least, gap_after(wall, m, t));
-    return least;
-  }
-  std::vector<NearFacet> near;
-  container.exact().facets_near(m.c + t * m.direction, m.r + near_contact, near);
-  for (const NearFacet& n : near) least = std::min(least, gap_after(n.facet, m, t));
+  for (const Gap& gap : gaps_near(container, m, t)) least = std::min(least, gap(t));
   return least;
 }
 
 /// The same on the whole way up to t, of which the contact at `touch` is the deepest place or near it.
 long double least_gap_on_way(const PricedContainer& container, const Motion& m, double touch, double t) {
   long double least = std::min(least_gap(container, m, t), least_gap(container, m, touch));
-  if (!container.is_mesh()) return least;
-  std::vector<NearFacet> near;
-  container.exact().facets_near(m.c + touch * m.direction, m.r + near_contact, near);
-  for (const NearFacet& n : near) {
+  if (!container.is_mesh() && !std::holds_alternative<Revolved>(container.shape)) return least;
+  for (const Gap& gap : gaps_near(container, m, touch)) {
     long double low = 0, high = t;
     for (int k = 0; k < 120; ++k) {
       const long double a = low + (high - low) / 3, b = high - (high - low) / 3;
-      (gap_after(n.facet, m, a) < gap_after(n.facet, m, b) ? high : low) =
-          gap_after(n.facet, m, a) < gap_after(n.facet, m, b) ? b : a;
+      (gap(a) < gap(b) ? high : low) = gap(a) < gap(b) ? b : a;
     }
-    least = std::min(least, gap_after(n.facet, m, low));
+    least = std::min(least, gap(low));
   }
   return least;
 }

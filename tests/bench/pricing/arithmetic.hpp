@@ -29,8 +29,9 @@ struct PricedContainer {
   const Container& exact() const { return *at[level_count - 1]; }
 };
 
-/// A box, an oblique cylinder and a sphere, all of size 1 to 2, of coordinates that are no round numbers but
-/// for what makes exact ties possible; then meshes of about 10^2, 10^3, … triangles, up to `largest`: a cube
+/// A box, an oblique cylinder, a sphere, and about the axis of that cylinder a frustum, a tube and a hopper,
+/// all of size 1 to 2, of coordinates that are no round numbers but for what makes exact ties possible; then
+/// meshes of about 10^2, 10^3, … triangles, up to `largest`: a cube
 /// with five flat faces and a wavy sixth.
 std::vector<PricedContainer> containers_to_price(std::uint64_t largest);
 

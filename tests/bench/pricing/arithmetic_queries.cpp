@@ -3,6 +3,8 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "bench/pricing/arithmetic.hpp"
 #include "bernal/cad/mesh_container.hpp"
@@ -24,6 +26,13 @@ const std::array<Vector<3>, 2> ways_across = {Vector<3>{1, 2, -2}, Vector<3>{2, 
 
 const Box box_shape{Vector<3>(-1, -0.75, -0.5), Vector<3>(2, 1.5, 1.25)};
 const Cylinder cylinder_shape{{-0.75, -0.25, -0.5}, {2, 1, 2}, 0.75, 1.5};
+/// Solids of revolution about the axis of the cylinder. The wall of the cone rises by 4 on 3.
+Revolved about_the_axis(std::vector<Vector<2>> profile) {
+  return {cylinder_shape.base, cylinder_shape.axis, std::move(profile)};
+}
+const Revolved cone_shape = about_the_axis({{0, 0}, {0.25, 0}, {1.375, 1.5}, {0, 1.5}});
+const Revolved tube_shape = about_the_axis({{0.25, 0}, {0.75, 0}, {0.75, 1.5}, {0.25, 1.5}});
+const Revolved hopper_shape = about_the_axis({{0, 0}, {0.25, 0}, {0.75, 0.25}, {0.75, 1.5}, {0, 1.5}});
 const Sphere sphere_shape{{0.125, -0.25, 0.5}, 63.0 / 64};  // a multiple of 3, 7 and 9 of a grain
 
 /// The cube from -1 to 1, each face cut into n x n squares of two triangles, the upper one wavy.
@@ -99,6 +108,11 @@ Vector<3> place_inside(const Container& container, Random& random) {
 const std::array<int, 4>& whole_vector(Random& random) {
   return whole[static_cast<std::size_t>(random.uniform() * whole.size())];
 }
+/// The middle of the axis, at the height of 0.75.
+Vector<3> middle_of_axis() { return cylinder_shape.base + 0.25 * cylinder_shape.axis; }
+/// Such that a point 3 s from the middle of the axis is a multiple of the grain from the wall of the cone.
+double toward_slope(double s) { return grain * (5 * std::floor(s / (5 * grain)) + 1); }
+double distance_from_slope(double s) { return (3.25 - 12 * s) / 5; }
 const Vector<3>& vector_across(Random& random) { return ways_across[random.uniform() < 0.5 ? 0 : 1]; }
 
 /// A ball that touches exactly.
@@ -111,8 +125,16 @@ Query touching(const PricedContainer& priced, Random& random) {
     q.r = sphere_shape.radius - length * s;
   } else if (std::holds_alternative<Cylinder>(priced.shape)) {
     const double s = on_grain(random.uniform(0.12, 0.22));
-    q.c = cylinder_shape.base + 0.25 * cylinder_shape.axis + s * vector_across(random);
+    q.c = middle_of_axis() + s * vector_across(random);
     q.r = cylinder_shape.radius - 3 * s;
+  } else if (priced.name == "cone") {
+    const double s = toward_slope(random.uniform(0.02, 0.12));
+    q.c = middle_of_axis() + s * vector_across(random);
+    q.r = distance_from_slope(s);
+  } else if (std::holds_alternative<Revolved>(priced.shape)) {
+    const double s = on_grain(random.uniform(0.12, 0.22)), inner = priced.name == "tube" ? 3 * s - 0.25 : 1;
+    q.c = middle_of_axis() + s * vector_across(random);
+    q.r = std::min(cylinder_shape.radius - 3 * s, inner);
   } else if (priced.is_mesh()) {
     q.r = on_grain(random.uniform(0.01, 0.4));
     q.c = {on_grain(random.uniform(-0.5, 0.5)), on_grain(random.uniform(-0.5, 0.5)), q.r - 1};
@@ -135,6 +157,9 @@ std::vector<PricedContainer> containers_to_price(std::uint64_t largest) {
   all.push_back(price_container("box", box_shape));
   all.push_back(price_container("cylinder", cylinder_shape));
   all.push_back(price_container("sphere", sphere_shape));
+  all.push_back(price_container("cone", cone_shape));
+  all.push_back(price_container("tube", tube_shape));
+  all.push_back(price_container("hopper", hopper_shape));
   double triangles = 100;
   for (int power = 2; triangles <= static_cast<double>(largest); ++power, triangles *= 10)
     all.push_back(price_container(fmt::format("mesh 1e{}", power),
@@ -166,8 +191,10 @@ Query query_of_centre(const PricedContainer& priced, Population population, Rand
     if (std::holds_alternative<Sphere>(priced.shape)) {
       const auto& [x, y, z, length] = whole_vector(random);
       q.c = sphere_shape.center + sphere_shape.radius / length * Vector<3>(x, y, z);
-    } else if (std::holds_alternative<Cylinder>(priced.shape)) {
-      q.c = cylinder_shape.base + on_grain(random.uniform(0.01, 0.49)) * cylinder_shape.axis +
+    } else if (priced.name == "cone") {  // on its floor
+      q.c = cylinder_shape.base + on_grain(random.uniform(0.01, 0.08)) * vector_across(random);
+    } else if (!priced.is_mesh() && !std::holds_alternative<Box>(priced.shape)) {
+      q.c = cylinder_shape.base + on_grain(random.uniform(0.1, 0.49)) * cylinder_shape.axis +
             cylinder_shape.radius / 3 * vector_across(random);
     } else {
       q.c = place_inside(container, random);
@@ -201,10 +228,19 @@ Query query_of_way(const PricedContainer& priced, Population population, Random&
       q.direction = Vector<3>(x, y, z);
       q.limit /= 8;
       q.r = sphere_shape.radius - length * q.limit;
-    } else if (std::holds_alternative<Cylinder>(priced.shape)) {
-      q.c = cylinder_shape.base + 0.25 * cylinder_shape.axis;
+    } else if (priced.name == "cone") {
+      q.c = middle_of_axis();
       q.direction = vector_across(random);
-      q.r = cylinder_shape.radius - 3 * q.limit;
+      q.limit = toward_slope(q.limit);
+      q.r = distance_from_slope(q.limit);
+    } else if (!priced.is_mesh() && !std::holds_alternative<Box>(priced.shape)) {
+      // In a tube it starts between the walls.
+      const bool is_tube = priced.name == "tube";
+      const double start = is_tube ? 10. / 64 : 0;
+      q.direction = vector_across(random);
+      q.c = middle_of_axis() + start * q.direction;
+      if (is_tube) q.limit = on_grain(random.uniform(0.03, 0.06));
+      q.r = cylinder_shape.radius - 3 * (start + q.limit);
     } else {
       q.c[2] = priced.exact().bounds().lower[2] + 0.25;
       q.direction = {0, 0, -1};

@@ -24,8 +24,9 @@ struct Share {
   std::vector<double> meshes;
 
   double of(const std::vector<PricedContainer>& containers, std::size_t k) const {
-    constexpr std::size_t analytic_containers = 3;
-    return containers[k].is_mesh() ? meshes[std::min(k - analytic_containers, meshes.size() - 1)] : analytic;
+    const auto first = std::ranges::find_if(containers, &PricedContainer::is_mesh) - containers.begin();
+    if (!containers[k].is_mesh()) return analytic;
+    return meshes[std::min(k - static_cast<std::size_t>(first), meshes.size() - 1)];
   }
 };
 constexpr double share_of_pairs = 8;

@@ -1,7 +1,5 @@
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "hard/table/hard_case.hpp"
 #include "support/broken_meshes.hpp"
 

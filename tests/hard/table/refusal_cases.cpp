@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "hard/table/hard_case.hpp"
 
 // What no packing can come of is refused before anything is drawn, with the number and the likely reason.

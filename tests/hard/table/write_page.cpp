@@ -1,7 +1,5 @@
-#include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <map>
 #include <string>
 
 #include <fmt/format.h>

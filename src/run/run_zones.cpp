@@ -1,0 +1,148 @@
+#include "run/run_zones.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bernal/core/text.hpp"
+#include "bernal/scene/sphere_classes.hpp"
+#include "plan/plan_zones.hpp"
+#include "run/begin_packing.hpp"
+
+namespace bernal {
+namespace {
+
+/// From what is there to what is not.
+int severity(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::converged:
+    case Outcome::imported:
+      return 0;
+    case Outcome::loose:
+      return 1;
+    case Outcome::full:
+      return 2;
+    case Outcome::hit_limit:
+      return 3;
+    case Outcome::cancelled:
+      break;
+  }
+  return 4;
+}
+
+class ZonedRun {
+ public:
+  ZonedRun(const Plan& plan, const RunOptions& options)
+      : plan_(plan),
+        options_(options),
+        classes_(classes_of(plan.scene)),
+        packing_(begin_packing(plan, options.seed, options.threads)) {
+    packing_.domain = plan.domain;
+    packing_.container = plan.container;
+    packing_.volume = volume_of(plan.domain);
+    packing_.spheres = Spheres<dynamic>(3);
+  }
+
+  Packing packed() {
+    if (options_.checkpoints.resume && options_.checkpoints.tell)
+      options_.checkpoints.tell("a packing of zones has no checkpoints; it starts anew");
+    for (std::size_t k = 0; k < plan_.parts.size() && packing_.outcome != Outcome::cancelled; ++k) pack(k);
+    wrap(packing_.spheres, packing_.domain);
+    return std::move(packing_);
+  }
+
+ private:
+  void pack(std::size_t k) {
+    const PlannedPart& part = plan_.parts[k];
+    const std::size_t below = packing_.spheres.size();
+    const bool onto = part.on_others && below > 0;
+    Packing packed = onto ? run(plan_of_layer(plan_, part, packing_.spheres), sub_options(k))
+                          : run(part.plan, sub_options(k));
+    take_spheres(packed.spheres, part, onto ? below : 0);
+    packing_.classes.resize(packing_.spheres.size(), part.sphere_class);
+    take_account(packed, part, onto ? 0 : below);
+  }
+
+  /// Those of a layer come after those that it lies on, which it holds too.
+  void take_spheres(Spheres<dynamic>& spheres, const PlannedPart& part, std::size_t below) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (double& x : spheres.x[axis]) x += part.shift[static_cast<Eigen::Index>(axis)];
+    if (below > 0 && spheres.size() >= below) {
+      packing_.spheres = std::move(spheres);
+      return;
+    }
+    for (std::size_t i = 0; i < spheres.size(); ++i)
+      packing_.spheres.push_back(spheres.center(i), spheres.r[i]);
+  }
+
+  void take_account(const Packing& packed, const PlannedPart& part, std::size_t before) {
+    const std::size_t n = packing_.spheres.size();
+    const double share = packed.volume / packing_.volume;
+    const double filled_before = before > 0 ? filled_ : 0;
+    for (Milestone milestone : packed.history) {
+      milestone.stage = fmt::format("{}: {}", classes_[part.sphere_class].name, milestone.stage);
+      milestone.spheres += before;
+      milestone.packing_fraction = filled_before + share * milestone.packing_fraction;
+      milestone.seconds += packing_.seconds;
+      packing_.history.push_back(std::move(milestone));
+    }
+    for (const Effect& effect : packed.effects) {
+      const auto same = std::ranges::find(packing_.effects, effect.name, &Effect::name);
+      if (same == packing_.effects.end()) {
+        packing_.effects.push_back(effect);
+      } else {
+        same->calls += effect.calls;
+        same->seconds += effect.seconds;
+      }
+    }
+    filled_ = packing_.packing_fraction();
+    packing_.seconds += packed.seconds;
+    if (severity(packed.outcome) > severity(packing_.outcome)) packing_.outcome = packed.outcome;
+    packing_.reason += fmt::format("{}{}, {} spheres: {}", packing_.reason.empty() ? "" : "; ",
+                                   classes_[part.sphere_class].name, grouped(n - told_), packed.reason);
+    told_ = n;
+  }
+
+  RunOptions sub_options(std::size_t k) const {
+    constexpr std::uint64_t seeds = std::uint64_t{1} << 63;  // that a scene can hold
+    RunOptions options{
+        .seed = (packing_.seed + k) % seeds,
+        .threads = options_.threads,
+        .monitor = {[this, k](const Progress& progress) { tell(progress, k); }, options_.monitor.cancelled},
+        .checkpoints = {},
+        .engine_folder = {}};
+    return options;
+  }
+
+  /// What is told of a part is told of the whole.
+  void tell(Progress progress, std::size_t k) const {
+    double before = 0, all = 0;
+    for (std::size_t other = 0; other < plan_.parts.size(); ++other) {
+      const double seconds = std::max(1e-9, plan_.parts[other].plan.expected_seconds);
+      if (other < k) before += seconds;
+      all += seconds;
+    }
+    const double own = std::max(1e-9, plan_.parts[k].plan.expected_seconds);
+    progress.fraction = (before + own * progress.fraction) / all;
+    const std::string detail =
+        fmt::format("{}: {}", classes_[plan_.parts[k].sphere_class].name, progress.detail);
+    progress.detail = detail;
+    options_.monitor.report(progress);
+  }
+
+  const Plan& plan_;
+  const RunOptions& options_;
+  const std::vector<SphereClass> classes_;
+  Packing packing_;
+  double filled_ = 0;
+  std::size_t told_ = 0;  // spheres of the zones that the reason tells of
+};
+
+}  // namespace
+
+Packing run_zones(const Plan& plan, const RunOptions& options) { return ZonedRun(plan, options).packed(); }
+
+}  // namespace bernal
