@@ -16,8 +16,9 @@ constexpr std::size_t plain = 0, filtered = 1, exact = 2;
 void expect_sound(const PricedRow& row, std::uint64_t asked) {
   const std::string what = row.decision + ", " + row.container;
   EXPECT_EQ(row.level[filtered]->differ, 0u) << what;
-  EXPECT_GT(row.level[exact]->exact_share, 0.8)
-      << what << ": all but where boxes of a mesh or profile decide";
+  // All but where boxes of a mesh decide, and where extended precision knows that a profile is not met.
+  const bool by_profile = row.container == "cone" || row.container == "tube" || row.container == "hopper";
+  EXPECT_GT(row.level[exact]->exact_share, by_profile ? 0.3 : 0.9) << what;
   EXPECT_GT(row.level[filtered]->exact_share, 0.1) << what << ": a quarter are ties";
   EXPECT_LT(row.level[filtered]->exact_share, 0.9) << what;
   for (const auto& level : row.level) {
