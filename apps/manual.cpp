@@ -73,7 +73,7 @@ std::string begun_large(std::string text) {
   return text;
 }
 
-std::string paragraphs(std::string_view text, std::string_view between = ".PP\n") {
+std::string roff_paragraphs(std::string_view text, std::string_view between = ".PP\n") {
   std::string roff;
   for (;;) {
     const std::size_t end = text.find("\n\n");
@@ -90,7 +90,7 @@ std::string entries(const std::vector<Entry>& all) {
   for (const Entry& entry : all) {
     std::string what = entry.what;
     for (std::size_t at = 0; (at = what.find('\n', at)) != std::string::npos; at += 2) what.insert(at, 1, '\n');
-    roff += fmt::format(".TP\n{}\n{}", bold(entry.name), paragraphs(what, ".br\n"));
+    roff += fmt::format(".TP\n{}\n{}", bold(entry.name), roff_paragraphs(what, ".br\n"));
   }
   return roff;
 }
@@ -234,8 +234,8 @@ class Writer {
     text += ".SH NAME\n" + plain(dashed(whole)) + " \\- " + plain(what) + "\n";
     text += ".SH SYNOPSIS\n" + synopsis(command, whole);
     if (of_all) text += ".br\n.B " + plain(whole) + "\n" + bold("--help") + " | " + bold("--version") + "\n";
-    text += ".SH DESCRIPTION\n" + paragraphs(command.what + (command.what.ends_with('.') ? "" : "."));
-    if (!more.text.empty()) text += ".PP\n" + paragraphs(more.text);
+    text += ".SH DESCRIPTION\n" + roff_paragraphs(command.what + (command.what.ends_with('.') ? "" : "."));
+    if (!more.text.empty()) text += ".PP\n" + roff_paragraphs(more.text);
     if (!command.commands.empty()) {
       text += ".SH COMMANDS\n";
       std::vector<Entry> commands;

@@ -8,6 +8,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/scene/sphere_classes.hpp"
 #include "bernal/version.hpp"
 #include "formats/format.hpp"
 #include "scene/toml_text.hpp"
@@ -95,11 +96,12 @@ void treat_contacts(Exported& made, const Format& format, const Monitor& monitor
   }
 }
 
-/// The type of every radius, from 1, and their number: classes of equal width if `asked`; else one type a
-/// radius if there are at most ten radii, otherwise one.
-std::uint32_t take_types(std::span<const double> radii, const std::optional<int>& asked,
+/// The type of every sphere, from 1, and their number: classes of radii of equal width if `asked`; else one
+/// type a zone; else one type a radius if there are at most ten radii, otherwise one.
+std::uint32_t take_types(const Packing& packing, const std::optional<int>& asked,
                          std::vector<std::uint32_t>& types) {
   constexpr std::size_t most_by_radius = 10;
+  const std::span<const double> radii = packing.spheres.r;
   types.assign(radii.size(), 1);
   if (radii.empty()) return 1;
   if (asked) {
@@ -110,6 +112,10 @@ std::uint32_t take_types(std::span<const double> radii, const std::optional<int>
                           static_cast<std::uint32_t>(*asked - 1)) +
                  1;
     return static_cast<std::uint32_t>(*asked);
+  }
+  if (!packing.scene.zones.empty() && packing.classes.size() == radii.size()) {
+    for (std::size_t i = 0; i < radii.size(); ++i) types[i] = packing.classes[i] + 1;
+    return static_cast<std::uint32_t>(classes_of(packing.scene).size());
   }
   std::set<double> different;
   for (const double r : radii)
@@ -167,7 +173,7 @@ Exported exported(const Packing& packing, const Output& output, const Monitor& m
                   fmt::format("sphere {} has the radius {} {}, which numbers of the format {} cannot hold", i,
                               packing.spheres.r[i], name_of(packing.scene.unit), output.format));
   if (format.wraps) wrap_into_periods(made, format.centred);
-  made.type_count = take_types(packing.spheres.r, output.types, made.types);
+  made.type_count = take_types(packing, output.types, made.types);
   treat_contacts(made, format, monitor);
   return made;
 }

@@ -46,17 +46,17 @@ double packing_fraction(const Spheres<dynamic>& spheres, const Domain& domain) {
 namespace {
 
 /// Products of larger lengths overflow.
-constexpr double longest = 1e100;
+constexpr double longest_measurable = 1e100;
 
 void require_measurable(const Spheres<dynamic>& spheres) {
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double farthest = spheres.center(i).cwiseAbs().maxCoeff(), r = spheres.r[i];
-    if (!(farthest < longest && r > 1 / longest && r < longest))
+    if (!(farthest < longest_measurable && r > 1 / longest_measurable && r < longest_measurable))
       throw Error(
           ErrorCode::bad_argument,
           fmt::format("sphere {} of radius {:g}, {:g} from the origin, is beyond what can be measured, {:g} "
                       "to {:g}: check the units",
-                      i, r, farthest, 1 / longest, longest));
+                      i, r, farthest, 1 / longest_measurable, longest_measurable));
   }
 }
 

@@ -112,10 +112,10 @@ struct CutDomain {
       lowest = std::min(lowest, normal.dot(v) - offset);
       highest = std::max(highest, normal.dot(v) - offset);
     }
-    const double slack = tolerance * bounds_of(Domain(mesh)).size().norm() * normal.norm();
-    if (lowest >= -slack) return {};
-    if (highest <= slack) return mesh;
-    return cad::cut(mesh, {.normal = normal, .offset = offset, .text = "its place"}, slack / normal.norm());
+    const double near = tolerance * bounds_of(Domain(mesh)).size().norm() * normal.norm();
+    if (lowest >= -near) return {};
+    if (highest <= near) return mesh;
+    return cad::cut(mesh, {.normal = normal, .offset = offset, .text = "its place"}, near / normal.norm());
   }
   std::optional<Domain> operator()(const Sphere&) const { refuse_plane("no plane cuts a sphere here"); }
   std::optional<Domain> operator()(const Polygon&) const {

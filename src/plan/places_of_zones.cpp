@@ -22,7 +22,7 @@ using cad::CutPlane;
 
 constexpr double endless = std::numeric_limits<double>::infinity();
 /// Less than this share of the container is no overlap of two zones but rounding.
-constexpr double negligible = 1e-9;
+constexpr double negligible_overlap = 1e-9;
 
 [[noreturn]] void refuse(const Zone& zone, std::string_view key, const std::string& why) {
   throw Error(ErrorCode::bad_scene, why, zone.locations.of(key));
@@ -44,37 +44,37 @@ std::vector<CutPlane> planes_of(const Zone& zone) {
 }
 
 /// Points between two planes across a direction.
-struct Slab {
+struct Interval {
   double lower = -endless, upper = endless;
 
-  bool overlaps(const Slab& other) const {
+  bool overlaps(const Interval& other) const {
     return std::max(lower, other.lower) < std::min(upper, other.upper);
   }
 };
 
-/// A zone as a slab along a unit vector; nothing where one of its planes lies otherwise, to rounding.
-std::optional<Slab> slab_of(const std::vector<CutPlane>& planes, const Vector<3>& along) {
+/// A zone as an interval along a unit vector; nothing where one of its planes lies otherwise, to rounding.
+std::optional<Interval> interval_of(const std::vector<CutPlane>& planes, const Vector<3>& along) {
   constexpr double rounding = 1e-12;
-  Slab slab;
+  Interval interval;
   for (const CutPlane& plane : planes) {
     const double length = plane.normal.norm();
     if (plane.normal.cross(along).norm() > rounding * length) return {};
     const double at = plane.offset / length;
     if (plane.normal.dot(along) > 0)
-      slab.upper = std::min(slab.upper, at);
+      interval.upper = std::min(interval.upper, at);
     else
-      slab.lower = std::max(slab.lower, -at);
+      interval.lower = std::max(interval.lower, -at);
   }
-  return slab;
+  return interval;
 }
 
-/// What lies between slabs, in their order, from `first.lower` to `first.upper`.
-std::vector<Slab> gaps_between(std::vector<Slab> slabs, Slab all) {
-  std::ranges::sort(slabs, {}, &Slab::lower);
-  std::vector<Slab> gaps;
-  for (const Slab& slab : slabs) {
-    if (slab.lower > all.lower) gaps.push_back({all.lower, slab.lower});
-    all.lower = std::max(all.lower, slab.upper);
+/// What lies between intervals, in their order, from `first.lower` to `first.upper`.
+std::vector<Interval> gaps_between(std::vector<Interval> intervals, Interval all) {
+  std::ranges::sort(intervals, {}, &Interval::lower);
+  std::vector<Interval> gaps;
+  for (const Interval& interval : intervals) {
+    if (interval.lower > all.lower) gaps.push_back({all.lower, interval.lower});
+    all.lower = std::max(all.lower, interval.upper);
   }
   if (all.lower < all.upper) gaps.push_back(all);
   return gaps;
@@ -175,26 +175,26 @@ void require_apart(const Scene& scene, const std::vector<PlaceOfZone>& places, d
       const Zone &a = scene.zones[other], &b = scene.zones[k];
       if (a.place.empty() || b.place.empty()) continue;
       const std::optional<Domain> common = cut_by(places[other].domain, planes_of(b));
-      if (common && volume_of(*common) > negligible * volume) refuse_overlap(scene, k, other);
+      if (common && volume_of(*common) > negligible_overlap * volume) refuse_overlap(scene, k, other);
     }
 }
 
 /// Of zones between parallel planes what they leave.
 std::vector<Domain> between_zones(const Scene& scene, const Domain& whole) {
   Vector<3> along = Vector<3>::Zero();
-  std::vector<Slab> slabs;
+  std::vector<Interval> intervals;
   for (const Zone& zone : scene.zones) {
     const std::vector<CutPlane> planes = planes_of(zone);
     if (along.isZero(0)) along = planes.front().normal.normalized();
-    const std::optional<Slab> slab = slab_of(planes, along);
-    if (!slab)
+    const std::optional<Interval> interval = interval_of(planes, along);
+    if (!interval)
       refuse(zone, "place",
              "what lies in no zone is not known where their planes are not parallel: leave \"diameter\" and "
              "\"radius\" out of [spheres], or give that a [[zone]]");
-    slabs.push_back(*slab);
+    intervals.push_back(*interval);
   }
   std::vector<Domain> pieces;
-  for (const Slab& gap : gaps_between(slabs, {})) {
+  for (const Interval& gap : gaps_between(intervals, {})) {
     std::vector<CutPlane> planes;
     if (std::isfinite(gap.upper)) planes.push_back({.normal = along, .offset = gap.upper});
     if (std::isfinite(gap.lower)) planes.push_back({.normal = -along, .offset = -gap.lower});
@@ -256,48 +256,49 @@ std::vector<LayerOfZone> layers_of_zones(const Scene& scene, double lowest, doub
   const auto rest = static_cast<std::uint32_t>(scene.zones.size());
   const Vector<3> up = -down_in(scene);
   std::vector<LayerOfZone> layers;
-  std::vector<std::pair<Slab, std::uint32_t>> slabs;
+  std::vector<std::pair<Interval, std::uint32_t>> intervals;
   for (std::uint32_t k = 0; k < rest; ++k) {
     const Zone& zone = scene.zones[k];
     if (zone.place.empty()) {
       layers.push_back({k, {}});
       continue;
     }
-    const std::optional<Slab> slab = slab_of(planes_of(zone), up);
-    if (!slab) refuse(zone, "place", "layers of a bed lie one upon the other: give planes across gravity");
-    if (slab->upper <= lowest || slab->lower >= highest)
+    const std::optional<Interval> interval = interval_of(planes_of(zone), up);
+    if (!interval)
+      refuse(zone, "place", "layers of a bed lie one upon the other: give planes across gravity");
+    if (interval->upper <= lowest || interval->lower >= highest)
       refuse(zone, "place",
              fmt::format("nothing of the container is in the place of {}", name_of_zone(scene, k)));
-    slabs.emplace_back(*slab, k);
+    intervals.emplace_back(*interval, k);
   }
-  if (!layers.empty() && !slabs.empty())
+  if (!layers.empty() && !intervals.empty())
     refuse(scene.zones[layers.front().sphere_class], "",
            "either all layers of a bed have a \"place\", or none has, and they lie in their order");
-  if (slabs.empty()) {
+  if (intervals.empty()) {
     if (scene.draws()) layers.push_back({rest, {}});
     return layers;
   }
-  std::vector<Slab> taken;
-  for (const auto& [slab, k] : slabs) taken.push_back(slab);
-  const std::vector<Slab> gaps = gaps_between(taken, {lowest, highest});
+  std::vector<Interval> taken;
+  for (const auto& [interval, k] : intervals) taken.push_back(interval);
+  const std::vector<Interval> gaps = gaps_between(taken, {lowest, highest});
   if (scene.draws()) {
     require_one_piece(scene, gaps.size());
-    for (const Slab& gap : gaps) slabs.emplace_back(gap, rest);
+    for (const Interval& gap : gaps) intervals.emplace_back(gap, rest);
   }
-  std::ranges::stable_sort(slabs, {}, [](const auto& slab) { return slab.first.lower; });
+  std::ranges::stable_sort(intervals, {}, [](const auto& interval) { return interval.first.lower; });
   double ground = lowest;
-  for (std::size_t n = 0; n < slabs.size(); ++n) {
-    const auto& [slab, k] = slabs[n];
-    if (n > 0 && slab.overlaps(slabs[n - 1].first)) refuse_overlap(scene, k, slabs[n - 1].second);
-    if (slab.lower > ground)
+  for (std::size_t n = 0; n < intervals.size(); ++n) {
+    const auto& [interval, k] = intervals[n];
+    if (n > 0 && interval.overlaps(intervals[n - 1].first)) refuse_overlap(scene, k, intervals[n - 1].second);
+    if (interval.lower > ground)
       refuse(
           scene.zones[k], "place",
           fmt::format("nothing lies under {}: give \"diameter\" or \"radius\" in [spheres], or another zone "
                       "below it",
                       name_of_zone(scene, k)));
-    ground = std::max(ground, slab.upper);
-    const bool has_end = slab.upper < highest;
-    layers.push_back({k, has_end ? std::optional(slab.upper - lowest) : std::nullopt});
+    ground = std::max(ground, interval.upper);
+    const bool has_end = interval.upper < highest;
+    layers.push_back({k, has_end ? std::optional(interval.upper - lowest) : std::nullopt});
   }
   return layers;
 }

@@ -134,7 +134,7 @@ void expect_above(Plan& plan, double share) {
 void plan_layers(Plan& whole) {
   const VolumeBelow below(whole.domain, down_in(whole.scene));
   PlaceOfPlan place{whole.domain};
-  double filled = 0;  // of the container, by the layers so far
+  double laid = 0;  // of the container, by the layers so far
   for (const LayerOfZone& layer : layers_of_zones(whole.scene, below.lowest(), below.highest())) {
     PlannedPart part{
         .sphere_class = layer.sphere_class, .on_others = !whole.parts.empty(), .level = layer.level};
@@ -148,9 +148,9 @@ void plan_layers(Plan& whole) {
     place.container = part.plan.container;
     const double holds = below(part.level ? below.lowest() + *part.level : below.highest());
     const bool is_counted = part.plan.scene.target.count.has_value();
-    if (part.on_others && !is_counted) expect_above(part.plan, std::max(0.0, 1 - filled / holds));
+    if (part.on_others && !is_counted) expect_above(part.plan, std::max(0.0, 1 - laid / holds));
     const double solid = part.plan.expected_packing_fraction * volume_of(whole.domain);
-    filled = layer.level ? holds : filled + solid / part.plan.attainable_packing_fraction;
+    laid = layer.level ? holds : laid + solid / part.plan.attainable_packing_fraction;
     whole.parts.push_back(std::move(part));
   }
   whole.container = place.container;

@@ -42,11 +42,10 @@ const std::vector<schema::Key>& output_keys() {
                          above(0, 1e30))),
       of_quantity(Quantity::density, number(older_name_of_density(), "density",
                                             "an older name of material_density", above(0, 1e30))),
-      integer(
-          &Output::types, "types",
-          "so many types of spheres, classes of radii of equal width; if absent one for every radius where "
-          "at most ten occur, else one for all",
-          {1, 1000}),
+      integer(&Output::types, "types",
+              "so many types of spheres, classes of radii of equal width; if absent one for every zone, else "
+              "for every radius where at most ten occur, else one for all",
+              {1, 1000}),
       length(
           &Output::voxel, "voxel",
           "edge of an image's voxels in the scene's unit; along axes that repeat themselves the nearest that "

@@ -29,6 +29,9 @@ void take_from_whole(Scene& of, const Scene& whole) {
   of.overlap = whole.overlap;
   of.stages = whole.stages;
   of.stages_are_default = whole.stages_are_default;
+  for (const char* key : {"unit", "seed", "gap", "wall_gap", "walls", "overlap"})
+    if (const auto said = whole.locations.keys.find(key); said != whole.locations.keys.end())
+      of.locations.keys.insert(*said);
   if (!of.material_density) of.material_density = whole.material_density;
   // A bed as dense as the whole, where it says nothing; how high it is, and its top, are the last one's.
   BedTarget& bed = of.target.bed;

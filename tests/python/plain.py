@@ -1,4 +1,4 @@
-"""What `bernal measure` says, once more, by NumPy and textbook formulas: every pair is looked at, and volumes of spheres
+"""What `bernal measure` says, once more, by NumPy and textbook formulas: pairs are sorted along x, and volumes of spheres
 in shells are integrals. Shares nothing with the library."""
 
 import numpy as np
@@ -6,23 +6,25 @@ import numpy as np
 
 def touching_pairs(centers, radii, ratio, edges=None):
     """All pairs i < j, as two arrays sorted by i, then by j, whose gap over the sum of their radii is below the ratio, and
-    their distances. With edges: of the nearest images in that periodic box."""
-    first, second, distances = [], [], []
-    rows = 200
-    for start in range(0, len(centers), rows):
-        squared = np.zeros((len(centers[start : start + rows]), len(centers) - start))
-        for axis in range(centers.shape[1]):
-            apart = centers[None, start:, axis] - centers[start : start + rows, None, axis]
-            if edges is not None:
-                apart -= edges[axis] * np.rint(apart / edges[axis])
-            squared += apart * apart
-        sums = radii[None, start:] + radii[start : start + rows, None]
-        i, j = np.nonzero(squared < ((1 + ratio) * sums) ** 2)
-        later = j > i
-        first.append(i[later] + start)
-        second.append(j[later] + start)
-        distances.append(np.sqrt(squared[i[later], j[later]]))
-    return np.concatenate(first), np.concatenate(second), np.concatenate(distances)
+    their distances. With edges: of the nearest images in that periodic box. Sorted along x, each sphere is compared with
+    all that follow within reach; across the end of the box these are images of the first."""
+    reach = 2 * (1 + ratio) * radii.max()
+    ids = np.argsort(centers[:, 0])
+    count, x = len(ids), centers[ids, 0]
+    if edges is not None:
+        first = ids[x < x[0] + reach]
+        ids, x = np.concatenate([ids, first]), np.concatenate([x, centers[first, 0] + edges[0]])
+    pairs = []
+    for k in range(count):
+        others = ids[k + 1 : np.searchsorted(x, x[k] + reach)]
+        apart = centers[others] - centers[ids[k]]
+        if edges is not None:
+            apart -= edges * np.rint(apart / edges)
+        distance = np.sqrt((apart * apart).sum(axis=1))
+        near = distance < (1 + ratio) * (radii[others] + radii[ids[k]])
+        pairs += [(min(ids[k], j), max(ids[k], j), d) for j, d in zip(others[near], distance[near])]
+    first, second, distance = (np.array(column) for column in zip(*sorted(pairs)))
+    return first, second, distance
 
 
 def coordination(pairs, counted):

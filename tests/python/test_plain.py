@@ -17,7 +17,7 @@ PUBLISHED = SOURCE / "tests" / "published"
 
 def baranau():
     rows = np.fromfile(PUBLISHED / "baranau_10000.xyzd", "<f8").reshape(-1, 4)
-    edges = 3 * [20.0823593086113]
+    edges = np.full(3, 20.0823593086113)
     return bernal.from_arrays(rows[:, :3], rows[:, 3] / 2, unit="mm", box=edges, periodic="xyz"), edges
 
 
@@ -49,7 +49,7 @@ class Contacts(InFolder):
     def test_of_a_packing_by_lubachevsky_and_stillinger(self):
         packing, edges = baranau()
         found = self.expect_contacts(packing, edges=edges)
-        self.assertGreater(found[0], 6.2)  # its author counts 6.20 where spheres swell by 0.2 %
+        self.assertGreater(found[0], 6.1)  # without rattlers, its author counts 6.20 where spheres swell by 0.2 %
 
     def test_of_a_pebble_bed(self):
         packing = cardinal()
@@ -61,7 +61,7 @@ class Contacts(InFolder):
         file = Path(os.environ.get("BERNAL_PUBLISHED", "")) / "FinneyPack4021.txt"
         if not file.is_file():
             self.skipTest("FinneyPack4021.txt is not in the folder that BERNAL_PUBLISHED names")
-        centers = np.loadtxt(file)
+        centers = np.loadtxt(file)[:, 1:]
         packing = bernal.from_arrays(centers, 1, unit="mm")
         self.expect_contacts(packing)
         # In the middle, so that each has all its neighbours; measured distances scatter about contact.
@@ -70,7 +70,7 @@ class Contacts(InFolder):
             plain.coordination(plain.touching_pairs(centers, packing.radii, ratio), middle)
             for ratio in (0.01, 0.02, 0.05, 0.1, 0.2)
         ]
-        np.testing.assert_allclose(counts, [6.28, 6.85, 7.90, 9.02, 10.51], atol=0.08)
+        np.testing.assert_allclose(counts, [6.28, 6.85, 7.90, 9.02, 10.51], atol=0.03)
 
     def test_of_the_core_and_of_a_slab(self):
         packing = bernal.pack(
