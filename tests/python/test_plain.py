@@ -22,7 +22,7 @@ def baranau():
 
 
 def cardinal():
-    vessel = bernal.Cylinder(6.6, 16, base=[0, 0, -8])
+    vessel = bernal.Cylinder(6.6, 18, base=[0, 0, -9])
     return bernal.from_arrays(np.loadtxt(PUBLISHED / "cardinal_67.txt"), 1.5, unit="cm", container=vessel)
 
 
@@ -54,7 +54,7 @@ class Contacts(InFolder):
     def test_of_a_pebble_bed(self):
         packing = cardinal()
         found = self.expect_contacts(packing, column=6.6)
-        self.assertGreater(found[0], 3)
+        self.assertGreater(found[0], 2)
         self.assertGreater(bernal.measure(packing).wall_contacts, 20)
 
     def test_of_ball_bearings(self):
