@@ -231,7 +231,7 @@ Domain without_obstacles(const Domain& whole, Scene& scene, std::string& notes, 
   for (SceneContainer& solid : scene.container.obstacles) {
     const auto* file = std::get_if<MeshFile>(&solid);
     const std::string name = file ? file->file.filename().string()
-                                  : fmt::format("obstacle {}, a {},", ++number, schema::entry_of(solid).name);
+                                  : fmt::format("obstacle {} ({})", ++number, schema::entry_of(solid).name);
     std::string notes_of_file, caution_of_file;
     const Flattened obstacle = flattened(
         std::visit(MakeDomain{scene, solid, notes_of_file, caution_of_file}, solid), RoundAs::circumscribed);

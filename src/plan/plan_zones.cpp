@@ -14,6 +14,7 @@
 #include "domain/volume_below.hpp"
 #include "plan/made_plan.hpp"
 #include "plan/places_of_zones.hpp"
+#include "scene/stage_table.hpp"
 #include "scene/zones.hpp"
 
 namespace bernal {
@@ -97,10 +98,24 @@ Scene scene_of_class(const Scene& whole, std::uint32_t sphere_class) {
                                            : scene_of_rest(whole);
 }
 
+/// The stages with what they are told of spheres in a bed alone: a part of a periodic box has walls.
+void keep_what_acts_in_bed(std::vector<Stage>& stages) {
+  for (Stage& stage : stages) {
+    const StageTable& table = table_of(stage);
+    Stage made = table.make();
+    made.locations = stage.locations;
+    for (const schema::Key& key : table.keys.keys)
+      if (const auto value = key.of(table.options(stage)); value && key.acts_here(true))
+        key.member.set(table.options_of(made), *value);
+    stage = std::move(made);
+  }
+}
+
 /// A box that repeats itself along some axes begins at zero along these.
 Vector<3> move_to_origin(Scene& scene, Domain& domain) {
   auto* periodic = std::get_if<PeriodicBox>(&scene.container);
   if (!periodic) return Vector<3>::Zero();
+  keep_what_acts_in_bed(scene.stages);
   Box& box = std::get<Box>(domain);
   const Vector<3> shift = box.corner;
   box.corner = Vector<3>::Zero();

@@ -37,10 +37,9 @@ std::uint32_t take_class(const CsvLines& lines, std::string_view& line, std::vec
   if (name == std::string_view::npos) lines.fail("the line does not end in a class and a material");
   const std::string_view word = line.substr(name + 1, material - name - 1);
   line = line.substr(0, name);
-  const auto known = std::ranges::find(names, word);
-  if (known == names.end()) names.emplace_back(word);
-  return static_cast<std::uint32_t>(known == names.end() ? names.size() - 1
-                                                         : static_cast<std::size_t>(known - names.begin()));
+  const auto k = static_cast<std::size_t>(std::ranges::find(names, word) - names.begin());
+  if (k == names.size()) names.emplace_back(word);
+  return static_cast<std::uint32_t>(k);
 }
 
 /// One line: the coordinates, then the radius. `columns` are their names.

@@ -29,6 +29,9 @@ void take_from_whole(Scene& of, const Scene& whole) {
   of.overlap = whole.overlap;
   of.stages = whole.stages;
   of.stages_are_default = whole.stages_are_default;
+  for (const char* key : {"unit", "seed", "gap", "wall_gap", "walls", "overlap"})
+    if (const auto said = whole.locations.keys.find(key); said != whole.locations.keys.end())
+      of.locations.keys.insert(*said);
   if (!of.material_density) of.material_density = whole.material_density;
   // A bed as dense as the whole, where it says nothing; how high it is, and its top, are the last one's.
   BedTarget& bed = of.target.bed;
@@ -169,10 +172,15 @@ std::vector<SphereClass> classes_of(const Scene& scene) {
   if (!scene.draws()) return classes;
   if (const auto* sizes = std::get_if<Classes>(&scene.sizes);
       scene.zones.empty() && sizes && !sizes->names.empty()) {
-    for (std::size_t k = 0; k < sizes->values.size(); ++k)
+    const schema::Key plain{.name = "name", .type = schema::Type::text};
+    for (std::size_t k = 0; k < sizes->values.size(); ++k) {
+      const std::string& name = sizes->names[k];
+      const bool is_own = schema::accepts(plain, name) && std::ranges::count(sizes->names, name) == 1;
+      const std::string word = is_own ? name : fmt::format("class {}", k + 1);
       classes.push_back(
-          {sizes->names[k], sizes->names[k],
+          {word, word,
            sizes->material_densities.empty() ? scene.material_density : sizes->material_densities[k]});
+    }
   } else if (!scene.zones.empty() || !scene.material.empty()) {
     const bool is_plain =
         std::ranges::none_of(classes, [&](const SphereClass& other) { return other.name == scene.material; });

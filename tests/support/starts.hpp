@@ -35,7 +35,7 @@ class StartFixture : public ::testing::Test {
     for (double& r : written.r) r *= radii;
     std::filesystem::remove(folder / name);
     OutputFile file(folder / name);
-    write_csv(file, written, "m");
+    write_csv(file, spheres_in(written, Unit::m));
     file.close();
   }
 

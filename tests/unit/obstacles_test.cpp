@@ -159,7 +159,7 @@ TEST(Obstacles, AreWrittenAsTheyWereRead) {
 TEST(Obstacles, TheContainerKeepsItsWord) {
   const std::string said = describe(build(parse_scene(scene_with(cylinder + across), "s.toml")));
   EXPECT_NE(said.find("container  cylinder,"), std::string::npos) << said;
-  EXPECT_NE(said.find("took out obstacle 1, a cylinder, of 1024 faces"), std::string::npos) << said;
+  EXPECT_NE(said.find("took out obstacle 1 (cylinder) of 1024 faces"), std::string::npos) << said;
   EXPECT_NE(said.find("off by 0.0015 mm at most"), std::string::npos) << said;
 }
 
@@ -168,7 +168,7 @@ TEST(Obstacles, WhatCannotBeIsSaidInOneLine) {
     EXPECT_NE(refusal_of(container).find(why), std::string::npos) << refusal_of(container);
   };
   refused(cylinder + "obstacles = [{ kind = \"sphere\", radius = 1, center = [40, 0, 0] }]",
-          "s.toml:6: obstacle 1, a sphere, lies outside of the container");
+          "s.toml:6: obstacle 1 (sphere) lies outside of the container");
   refused(cylinder + "obstacles = [{ kind = \"sphere\", radius = 100 }]", "leaves nothing of the container");
   refused(cylinder + "periodic = true\n" + across, "no periods");
   refused("kind = \"box\"\nsize = [4, 5]\nobstacles = [\"a.stl\"]", "no periods");
