@@ -82,8 +82,10 @@ std::vector<Interval> gaps_between(std::vector<Interval> intervals, Interval all
 
 void refuse_overlap(const Scene& scene, std::size_t k, std::size_t other) {
   refuse(scene.zones[k], "place",
-         fmt::format("the places of {} and {} overlap; each part of the container is of one zone",
-                     name_of_zone(scene, other), name_of_zone(scene, k)));
+         fmt::format(
+             "the places of {} and {} overlap: give one of them another plane, as in place = [\"z > 10\", "
+             "\"z < 20\"]",
+             name_of_zone(scene, other), name_of_zone(scene, k)));
 }
 
 std::optional<Domain> cut_by(const Domain& domain, const std::vector<CutPlane>& planes) {

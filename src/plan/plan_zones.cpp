@@ -132,6 +132,10 @@ void plan_compartments(Plan& whole) {
     Scene scene = scene_of_class(whole.scene, place.sphere_class);
     PlannedPart part{.sphere_class = place.sphere_class};
     part.shift = move_to_origin(scene, place.domain);
+    if (whole.scene.is_periodic() && whole.hints.empty())
+      whole.hints.push_back(
+          "along an axis across which zones lie the box does not repeat itself: a part ends where the period "
+          "begins");
     part.plan = plan_of_part(whole.scene, place.sphere_class, scene, {std::move(place.domain)});
     whole.parts.push_back(std::move(part));
   }
@@ -149,7 +153,7 @@ void expect_above(Plan& plan, double share) {
 void plan_layers(Plan& whole) {
   const VolumeBelow below(whole.domain, down_in(whole.scene));
   PlaceOfPlan place{whole.domain};
-  double laid = 0;  // of the container, by the layers so far
+  double laid = 0, ground = 0;  // of the container, by the layers so far, and how high they are
   for (const LayerOfZone& layer : layers_of_zones(whole.scene, below.lowest(), below.highest())) {
     PlannedPart part{
         .sphere_class = layer.sphere_class, .on_others = !whole.parts.empty(), .level = layer.level};
@@ -161,11 +165,19 @@ void plan_layers(Plan& whole) {
     }
     part.plan = plan_of_part(whole.scene, layer.sphere_class, scene, place);
     place.container = part.plan.container;
-    const double holds = below(part.level ? below.lowest() + *part.level : below.highest());
+    const double above = part.plan.scene.target.bed.above_ground;
+    if (part.on_others && above > 0 && above <= ground)
+      throw Error(
+          ErrorCode::bad_scene,
+          fmt::format("a bed that is {:g} {} high ends within the layers below it, which are {:g} high",
+                      above, name_of(whole.scene.unit), ground),
+          whole.scene.target.where);
+    ground = std::max(ground, above);
+    const double holds = below(above > 0 ? below.lowest() + above : below.highest());
     const bool is_counted = part.plan.scene.target.count.has_value();
     if (part.on_others && !is_counted) expect_above(part.plan, std::max(0.0, 1 - laid / holds));
     const double solid = part.plan.expected_packing_fraction * volume_of(whole.domain);
-    laid = layer.level ? holds : laid + solid / part.plan.attainable_packing_fraction;
+    laid = above > 0 ? holds : laid + solid / part.plan.attainable_packing_fraction;
     whole.parts.push_back(std::move(part));
   }
   whole.container = place.container;

@@ -1,10 +1,12 @@
 #include "bernal/result/read_packing.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
@@ -84,7 +86,9 @@ std::filesystem::path spheres_of_result(const std::filesystem::path& folder) {
 Scene scene_of_result(const std::filesystem::path& folder) { return scene_in(folder); }
 
 Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder) {
-  return spheres_in(scene, folder).spheres;
+  SpheresFile read = spheres_in(scene, folder);
+  classes_in(scene, read);
+  return std::move(read.spheres);
 }
 
 std::vector<std::uint32_t> classes_in(const Scene& scene, const SpheresFile& file) {
@@ -95,7 +99,8 @@ std::vector<std::uint32_t> classes_in(const Scene& scene, const SpheresFile& fil
     const auto found = std::ranges::find(known, name, &SphereClass::name);
     if (found == known.end())
       throw Error(ErrorCode::bad_packing,
-                  fmt::format("there are spheres of a class \"{}\", which the scene does not have", name));
+                  fmt::format("there are spheres of a class \"{}\", and the scene has only {}", name,
+                              fmt::join(known | std::views::transform(&SphereClass::name), ", ")));
     number_of.push_back(static_cast<std::uint32_t>(found - known.begin()));
   }
   std::vector<std::uint32_t> classes = file.classes;

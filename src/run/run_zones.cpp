@@ -49,7 +49,11 @@ class ZonedRun {
   Packing packed() {
     if (options_.checkpoints.resume && options_.checkpoints.tell)
       options_.checkpoints.tell("a packing of zones has no checkpoints; it starts anew");
-    for (std::size_t k = 0; k < plan_.parts.size() && packing_.outcome != Outcome::cancelled; ++k) pack(k);
+    for (std::size_t k = 0; k < plan_.parts.size(); ++k)
+      if (packing_.outcome != Outcome::cancelled)
+        pack(k);
+      else
+        packing_.reason += fmt::format("; {}: not begun", classes_[plan_.parts[k].sphere_class].name);
     wrap(packing_.spheres, packing_.domain);
     return std::move(packing_);
   }
@@ -100,7 +104,9 @@ class ZonedRun {
     }
     filled_ = packing_.packing_fraction();
     packing_.seconds += packed.seconds;
-    if (severity(packed.outcome) > severity(packing_.outcome)) packing_.outcome = packed.outcome;
+    Outcome outcome = packed.outcome;
+    if (n == told_ && is_packed(outcome)) outcome = Outcome::full;
+    if (severity(outcome) > severity(packing_.outcome)) packing_.outcome = outcome;
     packing_.reason += fmt::format("{}{}, {} spheres: {}", packing_.reason.empty() ? "" : "; ",
                                    classes_[part.sphere_class].name, grouped(n - told_), packed.reason);
     told_ = n;

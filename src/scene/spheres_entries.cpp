@@ -164,7 +164,8 @@ const Entry& zone_entry() {
       {.name = "zone",
        .help = "a part of the container with sizes, an amount and a material of its own",
        .keys = {key(Type::text, &Zone::name, "name",
-                    "of its spheres, in the column class; if absent the material, else zone and its number"),
+                    "of its spheres, in the column class; if absent the material, where no other has that, "
+                    "else zone and its number"),
                 of_quantity(
                     Quantity::length,
                     names(&Zone::place, "place",
@@ -189,6 +190,8 @@ const Entry& spheres_of_zone_entry() {
                                            "height",    "top",      "scale",        "heap_angle"};
     std::erase_if(of.keys,
                   [&](const Key& key) { return std::ranges::find(of_all, key.name) != std::end(of_all); });
+    for (Key& key : of.keys)
+      if (key.name == "radius" || key.name == "diameter") key.words.clear();
     of.choices = {{{"count"}, {"packing_fraction"}, {"fill"}, {"mass"}, {}},
                   {{"porosity"}, {"bulk_density"}, {}},
                   {{"radius"}, {"diameter"}}};

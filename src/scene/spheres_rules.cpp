@@ -14,9 +14,9 @@ void amounts_rule(const Scene& scene, const Section& section) {
   for (const std::string_view amount : {"mass", "bulk_density"})
     if (!scene.material_density && (amount == "mass" ? scene.target.mass : scene.target.bulk_density))
       section.fail(amount,
-                   fmt::format("\"{}\" in [spheres] needs the \"material_density\" of the spheres, in "
-                               "kg/m3, such as 2500 for glass",
-                               amount));
+                   fmt::format("\"{}\" in {} needs the \"material_density\" of the spheres, in kg/m3, such "
+                               "as 2500 for glass",
+                               amount, section.name));
 }
 
 void start_rule(const Scene& scene, const Section& section) {

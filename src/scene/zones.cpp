@@ -32,6 +32,7 @@ void take_from_whole(Scene& of, const Scene& whole) {
   for (const char* key : {"unit", "seed", "gap", "wall_gap", "walls", "overlap"})
     if (const auto said = whole.locations.keys.find(key); said != whole.locations.keys.end())
       of.locations.keys.insert(*said);
+  if (of.material.empty() && !of.material_density) of.material = whole.material;
   if (!of.material_density) of.material_density = whole.material_density;
   // A bed as dense as the whole, where it says nothing; how high it is, and its top, are the last one's.
   BedTarget& bed = of.target.bed;
@@ -63,6 +64,19 @@ void require_plain_scene(const Scene& scene) {
   if (!box && scene.dimension() != 3)
     throw Error(ErrorCode::bad_scene, "zones are parts of a container of three dimensions, not of two",
                 scene.zones.front().locations.whole);
+  if (!scene.draws() && scene.scale != 1)
+    throw Error(ErrorCode::bad_scene,
+                "\"scale\" in [spheres] is of the sizes there, and there are none: leave it out",
+                scene.locations.of("scale"));
+  const auto refuse_names = [](const SceneSizes& sizes) {
+    if (const auto* classes = std::get_if<Classes>(&sizes); classes && !classes->names.empty())
+      throw Error(
+          ErrorCode::bad_scene,
+          "\"names\" of classes and [[zone]] exclude each other: the zones are what a result tells apart",
+          sizes.locations.of("names"));
+  };
+  refuse_names(scene.sizes);
+  for (const Zone& zone : scene.zones) refuse_names(zone.spheres.sizes);
   if (!scene.draws() && (!scene.target.is_open() || scene.target.fill))
     throw Error(ErrorCode::bad_scene,
                 "an amount in [spheres] is of the sizes there, which lie in no zone: give \"diameter\" or "
@@ -165,9 +179,8 @@ void complete_zones(Scene& scene) {
 std::vector<SphereClass> classes_of(const Scene& scene) {
   std::vector<SphereClass> classes;
   for (std::size_t k = 0; k < scene.zones.size(); ++k) {
-    const Scene& of = scene.zones[k].spheres;
-    classes.push_back({name_of_zone(scene, k), of.material,
-                       of.material_density ? of.material_density : scene.material_density});
+    const Scene of = scene_of_zone(scene, scene.zones[k]);
+    classes.push_back({name_of_zone(scene, k), of.material, of.material_density});
   }
   if (!scene.draws()) return classes;
   if (const auto* sizes = std::get_if<Classes>(&scene.sizes);
