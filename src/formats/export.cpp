@@ -218,7 +218,8 @@ std::string note_of(const Exported& file, const Format& format, const std::strin
   const OutputTable& table = table_of(file.output);
   std::string note =
       fmt::format("{}, {}", spheres_in(file), table.sizes == "diameter" ? "diameters" : "radii");
-  if (table.keys.find("material_density")) note += fmt::format(", density {} kg/m3", file.density());
+  if (table.keys.find("material_density"))
+    note += fmt::format(", density {} kg/m3", file.densities_in_words());
   if (table.keys.find("types"))
     note += fmt::format(", {} {}", file.type_count, file.type_count == 1 ? "type" : "types");
   return note + contacts + "; " + rounding_text(file, format, monitor) + remark;

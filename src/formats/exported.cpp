@@ -5,6 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
@@ -126,6 +127,17 @@ std::uint32_t take_types(const Packing& packing, const std::optional<int>& asked
   return static_cast<std::uint32_t>(sorted.size());
 }
 
+/// Those of zones, where the output is told no other density than what the scene has for all.
+void take_densities(Exported& made) {
+  constexpr double glass = 2500;
+  const Scene& scene = made.packing.scene;
+  if (scene.zones.empty() || made.output.types || !made.output.material_density ||
+      made.density() != scene.material_density.value_or(glass))
+    return;
+  for (const SphereClass& of : classes_of(scene))
+    made.type_densities.push_back(of.material_density.value_or(made.density()));
+}
+
 }  // namespace
 
 std::function<double(double)> unit_conversion(Unit from, Unit to) {
@@ -173,9 +185,15 @@ Exported exported(const Packing& packing, const Output& output, const Monitor& m
                   fmt::format("sphere {} has the radius {} {}, which numbers of the format {} cannot hold", i,
                               packing.spheres.r[i], name_of(packing.scene.unit), output.format));
   if (format.wraps) wrap_into_periods(made, format.centred);
+  take_densities(made);
   made.type_count = take_types(packing, output.types, made.types);
   treat_contacts(made, format, monitor);
   return made;
+}
+
+std::string Exported::densities_in_words() const {
+  return type_densities.empty() ? fmt::format("{}", density())
+                                : fmt::format("{}", fmt::join(type_densities, ", "));
 }
 
 double Exported::largest_radius() const {

@@ -34,6 +34,7 @@ struct Exported {
   Domain domain;
   std::vector<std::uint32_t> types;  ///< of each sphere, from 1
   std::uint32_t type_count = 1;
+  std::vector<double> type_densities = {};  ///< in kg/m³, where types are zones of several materials
   bool wrapped = false;  ///< some centres were outside the period and have been replaced by their images
   Monitor monitor = {};  ///< for slow writers
   /// The treatment of contacts; `spheres` are those after it.
@@ -57,6 +58,11 @@ struct Exported {
   Unit unit() const { return *output.unit; }
   /// Of the spheres, in kg/m³. Precondition: the format takes a density.
   double density() const { return *output.material_density; }
+  double density_of(std::uint32_t type) const {
+    return type_densities.empty() ? density() : type_densities[type - 1];
+  }
+  /// "2500", or of several types "2500, 7850".
+  std::string densities_in_words() const;
   double largest_radius() const;
 
   /// Whether each of three axes is periodic.

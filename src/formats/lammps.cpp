@@ -38,11 +38,11 @@ UnitStyle style_of_unit(Unit length) {
 void write_lammps(const Exported& file, TextFile& out) {
   const UnitStyle units = style_of_unit(file.unit());
   out.add("# ", file.title(), "; lengths in ", name_of(file.unit()), ", masses in ", units.mass,
-          "; of density ", file.density(), " kg/m3\n");
+          "; of density ", file.densities_in_words(), " kg/m3\n");
   out.add("# for: units ", units.name, "; dimension ", file.dimension(), "; boundary ", lammps_boundary(file),
           "; atom_style sphere; neighbor ", 0.5 * file.largest_radius(), " bin; read_data ", file.name(),
           "\n");
-  write_atoms(out, file, file.density() / units.density, "Atoms # sphere");
+  write_atoms(out, file, units.density, "Atoms # sphere");
 }
 
 /// The columns of an atom style; three more may follow, the image flags.
@@ -289,16 +289,18 @@ std::string lammps_boundary(const Exported& file) {
   return file.dimension() == 2 ? ends.substr(0, 4) + "p" : ends;
 }
 
-void write_atoms(TextFile& out, const Exported& file, double density, std::string_view heading) {
+void write_atoms(TextFile& out, const Exported& file, double unit_of_density, std::string_view heading) {
   const Bounds<3> box = file.box();
   out.add("\n", file.size(), " atoms\n", file.type_count, " atom types\n\n");
   constexpr std::string_view axes[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) out.add(box.lower[k], ' ', box.upper[k], ' ', axes[k], "lo ", axes[k], "hi\n");
   out.add("\n", heading, "\n\n");
-  const std::string of_density = fmt::format(" {} ", density);
+  std::vector<std::string> densities;
+  for (std::uint32_t type = 1; type <= file.type_count; ++type)
+    densities.push_back(fmt::format(" {} ", file.density_of(type) / unit_of_density));
   for (std::size_t i = 0; i < file.size(); ++i)
-    out.add(i + 1, ' ', file.types[i], ' ', 2 * file.spheres.r[i], of_density, file.coordinate(0, i), ' ',
-            file.coordinate(1, i), ' ', file.coordinate(2, i), '\n');
+    out.add(i + 1, ' ', file.types[i], ' ', 2 * file.spheres.r[i], densities[file.types[i] - 1],
+            file.coordinate(0, i), ' ', file.coordinate(1, i), ' ', file.coordinate(2, i), '\n');
 }
 
 Format lammps_format() {

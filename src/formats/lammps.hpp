@@ -8,8 +8,9 @@
 namespace bernal {
 
 /// Writes the body of a LAMMPS data file, after its first lines: counts, box, and under the heading a line
-/// `id type diameter density x y z` for each sphere.
-void write_atoms(TextFile& out, const Exported& file, double density, std::string_view heading);
+/// `id type diameter density x y z` for each sphere; densities are divided by
+/// `unit_of_density`, in kg/m³.
+void write_atoms(TextFile& out, const Exported& file, double unit_of_density, std::string_view heading);
 
 /// "p p f"; in two dimensions the third axis is periodic.
 std::string lammps_boundary(const Exported&);

@@ -158,7 +158,7 @@ void write_liggghts(const Exported& file, StagedFolder& staged) {
   TextFile out(staged.add(file.output.file.string()));
   out.add("# ", file.title(), "; lengths in ", name_of(file.unit()), ", density in kg/m3; run by ",
           plain_text(file_beside(file.output.file, script_ending)), "\n");
-  write_atoms(out, file, file.density(), "Atoms");
+  write_atoms(out, file, 1, "Atoms");
   out.close();
   std::vector<std::filesystem::path> with;
   if (file.size() > 0)

@@ -27,6 +27,8 @@ void write_pfc(const Exported& file, TextFile& out) {
     out.add('\n');
   }
   out.add("ball attribute density ", file.density(), '\n');
+  for (std::uint32_t type = 1; type <= file.type_densities.size() && file.type_count > 1; ++type)
+    out.add("ball attribute density ", file.density_of(type), " range group 'type_", type, "'\n");
 }
 
 /// `model domain extent xl xh yl yh [zl zh] condition periodic …`
