@@ -172,10 +172,15 @@ std::vector<SphereClass> classes_of(const Scene& scene) {
   if (!scene.draws()) return classes;
   if (const auto* sizes = std::get_if<Classes>(&scene.sizes);
       scene.zones.empty() && sizes && !sizes->names.empty()) {
-    for (std::size_t k = 0; k < sizes->values.size(); ++k)
+    const schema::Key plain{.name = "name", .type = schema::Type::text};
+    for (std::size_t k = 0; k < sizes->values.size(); ++k) {
+      const std::string& name = sizes->names[k];
+      const bool is_own = schema::accepts(plain, name) && std::ranges::count(sizes->names, name) == 1;
+      const std::string word = is_own ? name : fmt::format("class {}", k + 1);
       classes.push_back(
-          {sizes->names[k], sizes->names[k],
+          {word, word,
            sizes->material_densities.empty() ? scene.material_density : sizes->material_densities[k]});
+    }
   } else if (!scene.zones.empty() || !scene.material.empty()) {
     const bool is_plain =
         std::ranges::none_of(classes, [&](const SphereClass& other) { return other.name == scene.material; });

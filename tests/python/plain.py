@@ -23,8 +23,8 @@ def touching_pairs(centers, radii, ratio, edges=None):
         distance = np.sqrt((apart * apart).sum(axis=1))
         near = distance < (1 + ratio) * (radii[others] + radii[ids[k]])
         pairs += [(min(ids[k], j), max(ids[k], j), d) for j, d in zip(others[near], distance[near])]
-    first, second, distance = (np.array(column) for column in zip(*sorted(pairs)))
-    return first, second, distance
+    rows = np.array(sorted(pairs)).reshape(-1, 3)
+    return rows[:, 0].astype(int), rows[:, 1].astype(int), rows[:, 2]
 
 
 def coordination(pairs, counted):

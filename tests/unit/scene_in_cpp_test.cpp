@@ -200,7 +200,8 @@ TEST(Reference, AsDataSaysTheSame) {
                                                         {"diameter", schema::size_entries().size()},
                                                         {"stage", stage_tables().size()},
                                                         {"engine", schema::engine_entries().size()},
-                                                        {"output", export_formats().size()}}));
+                                                        {"output", export_formats().size()},
+                                                        {"zone", 1}}));
 }
 
 TEST(Reference, DefaultsAndLimitsAreThoseOfTheStructs) {

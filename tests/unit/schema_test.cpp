@@ -82,6 +82,8 @@ std::string sample(const Key& key, int choice) {
       return "[25.5, 100, 0]";
     case Type::axes:
       return "[0]";
+    case Type::text:
+      return choice == 0 ? "\"sand\"" : "\"glass of 3 mm\"";
     case Type::names:
       if (key.name.ends_with("sha256"))
         return fmt::format("[\"{}\"]", std::string(64, choice == 0 ? '0' : 'F'));
