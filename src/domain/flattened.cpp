@@ -13,7 +13,10 @@
 namespace bernal {
 namespace {
 
-constexpr int sides_of_round = 256, sides_of_ball = 128;
+/// A ball has an odd number of rings, and corners are turned by a quarter step, so that level and upright
+/// planes through the middle, and those that touch a round wall, meet no corner and no side.
+constexpr int sides_of_round = 256, sides_of_ball = 126;
+constexpr double quarter_turn = 0.25;
 
 /// How much farther from the axis the corners of a regular polygon are than its sides.
 double corners_over_sides(int sides) { return 1 / std::cos(std::numbers::pi / sides); }
@@ -45,13 +48,14 @@ struct Flatten {
       const bool is_pole = k == 0 || k == rings;
       solid.profile.emplace_back(is_pole ? 0 : radius * std::sin(angle), -radius * std::cos(angle));
     }
-    return {surface_of(solid, sides_of_ball, as), ball.radius * (factor * factor - 1)};
+    return {surface_of(solid, sides_of_ball, as, quarter_turn), ball.radius * (factor * factor - 1)};
   }
 
   Flattened operator()(const Revolved& solid) const {
     double farthest = 0;
     for (const Vector<2>& p : solid.profile) farthest = std::max(farthest, p[0]);
-    return {surface_of(solid, sides_of_round, as), farthest * (corners_over_sides(sides_of_round) - 1)};
+    return {surface_of(solid, sides_of_round, as, quarter_turn),
+            farthest * (corners_over_sides(sides_of_round) - 1)};
   }
 
   Flattened operator()(Mesh mesh) const {

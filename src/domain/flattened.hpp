@@ -11,7 +11,7 @@ struct Flattened {
 };
 
 /// The mesh of a solid of three dimensions without periods. Flat walls stay where they are. A round wall
-/// becomes 256 faces around its axis, a ball 64 rings of 128 faces; they lie inside of the solid
+/// becomes 256 faces around its axis, a ball 63 rings of 126 faces; they lie inside of the solid
 /// (RoundAs::within), or the solid lies inside of them (RoundAs::circumscribed), to rounding. The deviation
 /// is below 8e-5 of the largest distance from the axis, of a ball below 7e-4 of its radius. Exact corners of
 /// a mesh are dropped. Throws Error{bad_argument} for a polygon. Cost: a microsecond a face.

@@ -40,7 +40,7 @@ std::vector<Vector<2>> profile_with(const Revolved& shape, double outer, double 
 
 }  // namespace
 
-Mesh surface_of(const Revolved& shape, int sides, RoundAs as) {
+Mesh surface_of(const Revolved& shape, int sides, RoundAs as, double turn) {
   const double step = 2 * std::numbers::pi / sides;
   const double same_area = std::sqrt(step / std::sin(step));
   const double around_sides = 1 / std::cos(0.5 * step);
@@ -50,8 +50,6 @@ Mesh surface_of(const Revolved& shape, int sides, RoundAs as) {
   const double inner = as == RoundAs::of_same_area ? same_area : as == RoundAs::within ? around_sides : 1;
   const std::vector<Vector<2>> profile = profile_with(shape, outer, inner);
   const Vector<3> axis = shape.axis.stableNormalized(), u = axis.unitOrthogonal(), v = axis.cross(u);
-  // What ends at a round wall along a coordinate axis crosses a side of it then, and does not touch a corner.
-  const double first_angle = as == RoundAs::within ? 0.5 * step : 0;
   const auto around = static_cast<std::uint32_t>(sides);
   Mesh mesh;
   std::vector<std::uint32_t> first;  // corner of each ring
@@ -63,7 +61,7 @@ Mesh surface_of(const Revolved& shape, int sides, RoundAs as) {
       continue;
     }
     for (std::uint32_t k = 0; k < around; ++k) {
-      const double angle = first_angle + k * step;
+      const double angle = (turn + k) * step;
       mesh.vertices.push_back(center + p[0] * (std::cos(angle) * u + std::sin(angle) * v));
     }
   }

@@ -47,7 +47,7 @@ TEST(BadScene, IsOneLineWithTheFileTheLineAndTheRemedy) {
        {"ba\\u000Asis"}},
       {with_container("kind = \"cylindre\""), 3, {"unknown kind \"cylindre\"", "\"cylinder\"?"}},
       {with_container("kind = \"blob\""), 3, {"unknown kind \"blob\"", "known: \"box\""}},
-      {with_container("kind = \"annulus\""), 3, {"unknown kind \"annulus\"; did you mean \"tube\"?"}},
+      {with_container("kind = \"annulus\""), 3, {"unknown kind \"annulus\"", "; did you mean \"tube\"?"}},
       {with_container("kind = \"hopper\""), 3, {"did you mean \"revolved\"?"}},
       {with_container("kind = \"ball\""), 3, {"did you mean \"sphere\"?"}},
       {with_container("kind = \"plane\""), 3, {"did you mean \"polygon\" or \"extruded\"?"}},

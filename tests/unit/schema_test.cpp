@@ -95,6 +95,8 @@ std::string sample(const Key& key, int choice) {
                          : "[1, 2, { distribution = \"mixture\", of = [1, 2], shares = [1, 2] }]";
     case Type::distribution:
       return "1";
+    case Type::solids:
+      return choice == 0 ? "[\"part.stl\", { kind = \"sphere\", radius = 0.1 }]" : "[\"/tmp/a.stl\"]";
   }
   return "";
 }
@@ -111,6 +113,7 @@ std::string sample_of(const Entry& entry, const Key& key, int choice) {
   if (key.type == Type::file && std::ranges::any_of(entry.keys, has_points)) return file_of_points();
   if (key.name == "radii") return choice == 0 ? "[2, 0]" : "[1e-5, 3.0000000000000004]";
   if (key.name == "inner_radius") return "0.05";
+  if (key.name == "rounding") return "1e-10";  // of a box that is 1e-9 thick
   for (const OutputTable* format : output_tables())
     if (&format->keys == &entry && key.type == Type::file)
       return choice == 0 ? "\"mine.x\"" : "'a \"b\" \\c'";
@@ -126,6 +129,10 @@ std::string sample_of(const Entry& entry, const Key& key, int choice) {
 /// All keys of an entry that go with the n-th set of its choices.
 std::vector<Key> keys_of(const Entry& entry, std::size_t n) {
   std::vector<Key> keys = entry.keys;
+  if (entry.find("periodic") && entry.find("obstacles"))  // which exclude each other
+    std::erase_if(keys, [&](const Key& k) {
+      return n % 2 == 0 ? k.name == "periodic" : k.name == "obstacles" || k.name == "rounding";
+    });
   for (const schema::Choice& choice : entry.choices)
     for (std::size_t i = 0; i < choice.size(); ++i)
       if (i != n % choice.size())
