@@ -89,7 +89,8 @@ std::string entries(const std::vector<Entry>& all) {
   std::string roff;
   for (const Entry& entry : all) {
     std::string what = entry.what;
-    for (std::size_t at = 0; (at = what.find('\n', at)) != std::string::npos; at += 2) what.insert(at, 1, '\n');
+    for (std::size_t at = 0; (at = what.find('\n', at)) != std::string::npos; at += 2)
+      what.insert(at, 1, '\n');
     roff += fmt::format(".TP\n{}\n{}", bold(entry.name), roff_paragraphs(what, ".br\n"));
   }
   return roff;

@@ -7,10 +7,10 @@
 
 #include "bernal/core/monitor.hpp"
 
-/// Shows the progress of a run on standard error: on a terminal, after the first two seconds, one line that is
-/// redrawn; in files and pipes a line every ten seconds, and none before. After `monitor()` was called the
-/// first SIGINT or SIGTERM only makes `interrupted()` true, so that the run can end with what it has; a signal
-/// more than half a second later kills the process.
+/// Shows the progress of a run on standard error: on a terminal, after the first two seconds, one line that
+/// is redrawn; in files and pipes a line every ten seconds, and none before. After `monitor()` was called the
+/// first SIGINT or SIGTERM only makes `interrupted()` true, so that the run can end with what it has; a
+/// signal more than half a second later kills the process.
 class ProgressBar {
  public:
   /// `silent`: prints nothing, also at an interrupt.

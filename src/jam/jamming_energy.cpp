@@ -8,7 +8,7 @@
 
 #include "bernal/core/boundary.hpp"
 #include "core/every_dimension.hpp"
-#include "core/order.hpp"
+#include "jam/spatial_order.hpp"
 
 namespace bernal {
 namespace {
@@ -25,19 +25,6 @@ constexpr double least_stiffness = 1;
 constexpr double longest_move = 0.5;
 /// How much the box shrinks at most at a time; and, between walls, in all: nothing would be left of it else.
 constexpr double most_shrinkage = 0.5, smallest_scale = 0.5;
-
-/// Spheres in the order of cells that hold about one each, so that what touches lies close in memory.
-template <int D>
-std::vector<std::uint32_t> spatial_order(const Spheres<D>& spheres, const Vector<D>& edges) {
-  const double cells = std::max(1.0, std::floor(std::pow(static_cast<double>(spheres.size()), 1.0 / D)));
-  const Boundary<D> box{edges};
-  std::vector<double> cell(spheres.size(), 0);  // a whole number
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    const Vector<D> c = box.wrap(spheres.center(i));
-    for (int k = 0; k < D; ++k) cell[i] = cell[i] * cells + std::floor(c[k] / edges[k] * cells);
-  }
-  return smallest_first(cell);
-}
 
 /// s^(D - 2)
 template <int D>

@@ -21,11 +21,9 @@ constexpr double fall_of_pressure = 0.1, rise_of_pressure = 1000;
 /// Mean overlap ratio at the first level: at least the first, so that a network comes to bear the load; at
 /// most the second.
 constexpr double gentlest_start = 1e-4, hardest_start = 0.1;
-/// Where spheres come loose: they have some way to go before they hold each other, and steps are as long as
-/// overlaps are large.
+/// Where spheres come loose: far from holding each other, with steps as long as overlaps are large.
 constexpr double loose_start = 1e-2;
-constexpr int most_steps_when_loose = 2000;
-constexpr int most_climbs = 2;
+constexpr int most_steps_when_loose = 2000, most_climbs = 2;
 constexpr std::size_t solved_closely = 3000;
 constexpr double close_balance = 1e-5, loose_balance = 1e-3;
 constexpr int most_steps_a_level = 500;

@@ -108,8 +108,8 @@ class BoxTree {
  private:
   static constexpr std::size_t deepest = 40;  // of 2^32 items, one on each level and one more
 
-  void build(std::span<const Vector<D>> lower, std::span<const Vector<D>> upper, std::span<const double> sizes,
-             std::uint32_t leaf);
+  void build(std::span<const Vector<D>> lower, std::span<const Vector<D>> upper,
+             std::span<const double> sizes, std::uint32_t leaf);
 
   std::vector<Id> order_;
   std::vector<Node> nodes_;

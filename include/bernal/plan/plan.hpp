@@ -64,7 +64,7 @@ struct Plan {
 
 /// What is packed by itself of a scene with zones: a zone, or a piece of what lies in none.
 struct PlannedPart {
-  Plan plan = {};                            ///< in a domain of its own; of a layer, in all of the container
+  Plan plan = {};                       ///< in a domain of its own; of a layer, in all of the container
   std::uint32_t sphere_class = 0;       ///< of its spheres, see `classes_of`
   bool on_others = false;               ///< a layer, onto the spheres of those before it
   std::optional<double> level = {};     ///< where a layer ends: its height above the lowest point
