@@ -13,15 +13,16 @@
 namespace bernal {
 namespace {
 
-constexpr double width = 520, height = 260;
-constexpr double left = 62, right = 12, top = 44, bottom = 44;
+constexpr double chart_width = 520, chart_height = 260;
+constexpr double left_margin = 62, right_margin = 12, top_margin = 44, bottom_margin = 44;
 
 /// A chart of the report.
 class Chart : public Plot {
  public:
   Chart(const Axis& along, const Axis& across)
-      : Plot({left, top, width - right, height - bottom}, along, across) {
-    add("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\">", width, height);
+      : Plot({left_margin, top_margin, chart_width - right_margin, chart_height - bottom_margin}, along,
+             across) {
+    add("<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"img\">", chart_width, chart_height);
     axes();
   }
   std::string finish() && { return std::move(*this).Plot::finish() + "</svg>"; }
@@ -41,9 +42,9 @@ void add_stages(Chart& chart, const std::vector<Moment>& history) {
     if (m.stage == stage) continue;
     stage = m.stage;
     const double x = chart.x(m.seconds), end = x + 10 + 7.0 * static_cast<double>(stage.size());
-    if (x < free_from || end > width) continue;
-    chart.add("<path class=\"stage\" d=\"M{:.1f} {}V{}\"/>", x, top, height - bottom);
-    chart.add("<text x=\"{:.1f}\" y=\"{}\">{}</text>", x, top - 6, escaped(stage));
+    if (x < free_from || end > chart_width) continue;
+    chart.add("<path class=\"stage\" d=\"M{:.1f} {}V{}\"/>", x, top_margin, chart_height - bottom_margin);
+    chart.add("<text x=\"{:.1f}\" y=\"{}\">{}</text>", x, top_margin - 6, escaped(stage));
     free_from = end;
   }
 }
@@ -158,7 +159,8 @@ std::string size_correlation_chart(const SizeCorrelation& correlation) {
   const double reach =
       correlation.bin_width * static_cast<double>(correlation.d.size()) / correlation.mean_diameter;
   Chart chart({0, reach, "distance of the centres (mean diameters)"}, {-highest, highest, "C(d)"});
-  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(0), width - right);
+  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left_margin, chart.y(0),
+            chart_width - right_margin);
   add_band(chart, points, highest, -highest);
   return std::move(chart).finish();
 }
@@ -172,7 +174,8 @@ std::string bed_chart(const BedProfile& bed, std::string_view unit) {
     fractions.push_back(layer.packing_fraction);
   }
   Chart chart({0, 1.02 * bed.highest, fmt::format("height ({})", unit)}, {0, most, "packing fraction"});
-  chart.add("<path class=\"asked line\" d=\"M{:.1f} {}V{}\"/>", chart.x(bed.height), top, height - bottom);
+  chart.add("<path class=\"asked line\" d=\"M{:.1f} {}V{}\"/>", chart.x(bed.height), top_margin,
+            chart_height - bottom_margin);
   chart.line(heights, fractions, "first line");
   return std::move(chart).finish();
 }
@@ -191,8 +194,8 @@ std::string wall_chart(const WallProfile& profile) {
   Chart chart(
       {0, profile.layers[even].from / profile.mean_diameter, "distance from the wall (mean diameters)"},
       {0, highest, "porosity"});
-  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(profile.mean_porosity),
-            width - right);
+  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left_margin, chart.y(profile.mean_porosity),
+            chart_width - right_margin);
   add_band(chart, points, highest);
   return std::move(chart).finish();
 }
@@ -212,7 +215,8 @@ std::string wall_size_chart(const WallProfile& profile) {
   Chart chart({0, profile.layers.back().from / profile.mean_diameter,
                "from the wall to the surface of the sphere (mean diameters)"},
               {0, highest, "mean volume, of that of all"});
-  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(1), width - right);
+  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left_margin, chart.y(1),
+            chart_width - right_margin);
   add_band(chart, points, highest);
   return std::move(chart).finish();
 }
@@ -246,7 +250,8 @@ std::string local_packing_chart(const LocalPacking& local) {
               chart.x(least) + bar * static_cast<double>(k) + 0.5, chart.y(share[k]), bar - 1,
               chart.y(0) - chart.y(share[k]));
   if (local.mean <= most)
-    chart.add("<path class=\"asked line\" d=\"M{:.1f} {}V{}\"/>", chart.x(local.mean), top, height - bottom);
+    chart.add("<path class=\"asked line\" d=\"M{:.1f} {}V{}\"/>", chart.x(local.mean), top_margin,
+              chart_height - bottom_margin);
   return std::move(chart).finish();
 }
 
@@ -260,7 +265,8 @@ std::string structure_chart(const StructureFactor& factor) {
     points.push_back({factor.k[b] * factor.mean_diameter, s, error, error});
   }
   Chart chart({0, points.back().x, "wave number (inverse mean diameters)"}, {0, highest, "S(k)"});
-  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left, chart.y(1), width - right);
+  chart.add("<path class=\"asked line\" d=\"M{} {:.1f}H{}\"/>", left_margin, chart.y(1),
+            chart_width - right_margin);
   add_band(chart, points, highest);
   return std::move(chart).finish();
 }
