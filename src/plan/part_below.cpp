@@ -10,8 +10,6 @@
 
 #include "bernal/core/error.hpp"
 #include "cad/repair/plane_cut.hpp"
-#include "geometry/changes.hpp"
-#include "geometry/topology.hpp"
 
 namespace bernal {
 namespace {
@@ -117,24 +115,7 @@ struct CutDomain {
     const double near = tolerance * bounds_of(Domain(mesh)).size().norm() * normal.norm();
     if (lowest >= -near) return {};
     if (highest <= near) return mesh;
-    if (std::optional<Mesh> bodies = bodies_below(mesh, near)) return std::move(*bodies);
     return cad::cut(mesh, {.normal = normal, .offset = offset, .text = "its place"}, near / normal.norm());
-  }
-  /// Of a mesh of several bodies those below the plane, where it cuts none; else nothing.
-  std::optional<Mesh> bodies_below(const Mesh& mesh, double near) const {
-    std::vector<bool> kept;
-    for (const FaceCorners& corners : mesh.triangles) {
-      const auto height = [&](std::uint32_t v) { return normal.dot(mesh.vertices[v]) - offset; };
-      const auto [lowest, highest] =
-          std::minmax({height(corners[0]), height(corners[1]), height(corners[2])});
-      if (lowest < -near && highest > near) return {};
-      kept.push_back(highest <= near);
-    }
-    Mesh below = mesh;
-    keep_only(below, kept);
-    if (!topology_of(below).closed()) return {};
-    drop_unused_vertices(below);
-    return below;
   }
   std::optional<Domain> operator()(const Sphere&) const { refuse_plane("no plane cuts a sphere here"); }
   std::optional<Domain> operator()(const Polygon&) const {

@@ -129,6 +129,12 @@ TEST(Zones, ChambersAreCountedFromTheLargest) {
   EXPECT_LE(extent_of(packing, 0, 0).second, 28);
   EXPECT_GE(extent_of(packing, 1, 0).first, 40);
   EXPECT_LE(extent_of(packing, 2, 0).second, 10);
+  const Packing between = run(build(scene_of(container + "spheres = { diameter = 3 }\n[[zone]]\n"
+                                                         "place = \"x > 15\"\ndiameter = 1.5\n")),
+                              {});
+  EXPECT_TRUE(is_certified(between));
+  EXPECT_GE(extent_of(between, 0, 0).first, 20) << "a plane between bodies cuts none of them";
+  EXPECT_LE(extent_of(between, 1, 0).second, 10);
   EXPECT_NE(refusal(container + "spheres = { diameter = 3 }\n[[zone]]\nchamber = 4\ndiameter = 1\n")
                 .find("has 3 closed spaces"),
             std::string::npos);
@@ -182,6 +188,27 @@ TEST(Zones, AResultHoldsThem) {
   EXPECT_NE(explain(build(scene)).find("zone       sand, z < 8: 20"), std::string::npos);
 }
 
+TEST(Zones, ALayerThatHoldsNothingIsFull) {
+  const Packing packing = run(build(scene_of("container = { kind = \"box\", size = [10, 10, 20] }\n"
+                                             "spheres = { bed = \"poured\" }\n"
+                                             "[[zone]]\nplace = \"z < 8\"\ndiameter = 1.5\n"
+                                             "[[zone]]\nplace = [\"z > 8\", \"z < 8.1\"]\ndiameter = 2.5\n")),
+                              {});
+  EXPECT_EQ(std::ranges::count(packing.classes, 1u), 0);
+  EXPECT_EQ(packing.outcome, Outcome::full) << packing.reason;
+}
+
+TEST(Zones, ClassesOfAFileAreThoseOfTheScene) {
+  const Folder folder;
+  const Packing packing = run(
+      build(scene_of(std::string(cylinder) + "[[zone]]\nplace = \"z < 8\"\ndiameter = 1\ncount = 3\n")), {});
+  write_packing(packing, folder / "out", {.view = false});
+  const std::string csv = text_of(folder / "out" / "spheres.csv");
+  folder.write("out/spheres.csv", csv.substr(0, csv.rfind("zone 1")) + "banana,\n");
+  const std::string error = error_of([&] { read_packing(folder / "out"); }).what();
+  EXPECT_NE(error.find("a class \"banana\", and the scene has only zone 1"), std::string::npos) << error;
+}
+
 TEST(Zones, RefuseWhatCannotBeMeant) {
   const auto says = [](const std::string& text, const std::string& line) {
     const std::string error = refusal(text);
@@ -206,6 +233,12 @@ TEST(Zones, RefuseWhatCannotBeMeant) {
        "nothing lies under");
   says(in_cylinder + "spheres = { diameter = 1, gap = 0.1 }\n[[zone]]\nplace = \"z < 8\"\ndiameter = 1\n",
        "\"wall_gap\" of 0.05");
+  says(in_cylinder + "spheres = { scale = 2 }\n[[zone]]\nplace = \"z < 8\"\ndiameter = 1\n", "\"scale\" in");
+  says(in_cylinder + "[[zone]]\nplace = \"z < 8\"\nmass = 1\ndiameter = 1\n", "\"mass\" in [[zone]] 1 needs");
+  says(in_cylinder +
+           "spheres = { diameter = 1, bed = \"poured\", height = 5 }\n[[zone]]\nplace = \"z < 8\"\n"
+           "diameter = 1\n",
+       "ends within the layers below it");
   says(in_cylinder + "spheres = { count = 5 }\n[[zone]]\nplace = \"z < 8\"\ndiameter = 1\n",
        "lie in no zone");
   says("container = { kind = \"sphere\", radius = 5 }\n[[zone]]\nplace = \"z < 0\"\ndiameter = 1\n",

@@ -172,12 +172,16 @@ Mesh cut(const Mesh& mesh, const CutPlane& plane, double tolerance) {
   if (cutter.result.triangles.empty()) refuse("leaves nothing of the surface");
   if (cutter.removed == 0 && topology_of(mesh).closed()) return mesh;  // all of it is on that side
   const std::vector<Edge> rim = rim_of(cutter);
-  if (rim.empty()) refuse(cutter.removed == 0 ? "meets no surface" : "leaves nothing open to be closed");
+  const bool passes_between = rim.empty() && cutter.removed > 0 && topology_of(cutter.result).closed();
+  if (rim.empty() && !passes_between)
+    refuse(cutter.removed == 0 ? "meets no surface" : "leaves nothing open to be closed");
 
-  const auto lid = triangulate_regions(cutter.result.vertices, rim, plane.normal);
-  if (!lid) refuse("cuts the surface in a line that crosses itself or does not close");
   Mesh result = std::move(cutter.result);
-  result.triangles.insert(result.triangles.end(), lid->begin(), lid->end());
+  if (!passes_between) {
+    const auto lid = triangulate_regions(result.vertices, rim, plane.normal);
+    if (!lid) refuse("cuts the surface in a line that crosses itself or does not close");
+    result.triangles.insert(result.triangles.end(), lid->begin(), lid->end());
+  }
   drop_unused_vertices(result);
   return result;
 }

@@ -25,8 +25,9 @@ CutPlane plane_in(std::string_view text);
 
 /// The part of a surface on the plane's side, closed in the plane. Corners within `tolerance` of the plane
 /// count as on it. Edges that are open elsewhere stay open. A closed surface entirely on that side is
-/// unchanged. Throws Error{bad_mesh} if nothing is on that side, if the plane cuts nothing of an open
-/// surface, or if the cut crosses itself. Cost: O(n log n).
+/// unchanged; of several bodies that it passes between, those on that side stay. Throws Error{bad_mesh} if
+/// nothing is on that side, if the plane cuts nothing of an open surface, or if the cut crosses itself. Cost:
+/// O(n log n).
 Mesh cut(const Mesh& mesh, const CutPlane& plane, double tolerance);
 
 }  // namespace bernal::cad
