@@ -48,7 +48,8 @@ struct SceneContainer
   /// half of any edge. The walls are those of `rounded`, a mesh or a solid of revolution.
   double rounding = 0;
   /// Solids that are taken out of one of three dimensions without periods, none with obstacles of its own.
-  /// What then remains is a mesh, whose flat faces stand for round walls on the inner side of them. Those of a MeshFile that are files, in its unit, may stand in that instead.
+  /// What then remains is a mesh, whose flat faces stand for round walls on the inner side of them. Those of
+  /// a MeshFile that are files, in its unit, may stand in that instead.
   std::vector<SceneContainer> obstacles = {};
   Locations locations;
 
