@@ -90,7 +90,8 @@ class Arithmetic(Table):
     def test_filtered_is_exact_and_errors_are_below_their_bounds(self):
         lines = self.made("arithmetic", "--decisions", 3000, "--largest", 100, "--program", ARITHMETIC)
         self.assertEqual(len({line["decision"] for line in lines}), 6)
-        self.assertEqual({line["container"] for line in lines}, {"", "box", "cylinder", "sphere", "mesh 1e2"})
+        self.assertEqual({line["container"] for line in lines}, {"", "box", "cylinder", "sphere", "mesh 1e2", "cone", "tube",
+                                                                "hopper"})
         wrong = 0
         for line in lines:
             self.assertGreaterEqual(int(line["decisions"]), 1 if line["decision"] == "certificate" else 40)
