@@ -129,10 +129,9 @@ std::uint32_t take_types(const Packing& packing, const std::optional<int>& asked
 
 /// Those of zones, where the output is told no other density than what the scene has for all.
 void take_densities(Exported& made) {
-  constexpr double glass = 2500;
   const Scene& scene = made.packing.scene;
   if (scene.zones.empty() || made.output.types || !made.output.material_density ||
-      made.density() != scene.material_density.value_or(glass))
+      made.density() != usual_density(scene))
     return;
   for (const SphereClass& of : classes_of(scene))
     made.type_densities.push_back(of.material_density.value_or(made.density()));

@@ -98,8 +98,7 @@ std::optional<Domain> cut_by(const Domain& domain, const std::vector<CutPlane>& 
 /// Chambers by their size, the largest first; walls and what stands in them.
 class ChambersOfMesh {
  public:
-  ChambersOfMesh(const Scene& scene, const Domain& domain)
-      : scene_(scene), mesh_(std::get_if<Mesh>(&domain)) {}
+  explicit ChambersOfMesh(const Domain& domain) : mesh_(std::get_if<Mesh>(&domain)) {}
 
   Domain domain_of(const Zone& zone) {
     if (!mesh_) refuse(zone, "chamber", "a \"chamber\" is one of a mesh: give a \"place\"");
@@ -136,7 +135,6 @@ class ChambersOfMesh {
     return pieces_->walls_of(chosen);
   }
 
-  const Scene& scene_;
   const Mesh* mesh_;
   std::optional<cad::SurfacePieces> pieces_;
   std::vector<std::uint32_t> outermost_;
@@ -155,7 +153,8 @@ Domain domain_of_solid(const Scene& scene, const Zone& zone) {
   }
 }
 
-Domain domain_of_place(const Scene& scene, const Zone& zone, const Domain& whole) {
+Domain domain_of_place(const Scene& scene, std::size_t k, const Domain& whole) {
+  const Zone& zone = scene.zones[k];
   std::optional<Domain> part;
   try {
     part = cut_by(whole, planes_of(zone));
@@ -163,7 +162,6 @@ Domain domain_of_place(const Scene& scene, const Zone& zone, const Domain& whole
     if (!error.location().file.empty()) throw;
     refuse(zone, "place", error.message());
   }
-  const std::size_t k = static_cast<std::size_t>(&zone - scene.zones.data());
   if (!part)
     refuse(zone, "place",
            fmt::format("nothing of the container is in the place of {}", name_of_zone(scene, k)));
@@ -238,12 +236,12 @@ std::vector<PlaceOfZone> places_of_zones(const Scene& scene, const Domain& whole
   require_one_kind(scene);
   const auto rest = static_cast<std::uint32_t>(scene.zones.size());
   std::vector<PlaceOfZone> places;
-  ChambersOfMesh chambers(scene, whole);
+  ChambersOfMesh chambers(whole);
   for (std::uint32_t k = 0; k < rest; ++k) {
     const Zone& zone = scene.zones[k];
     places.push_back({!zone.solids.empty() ? domain_of_solid(scene, zone)
                       : zone.chamber       ? chambers.domain_of(zone)
-                                           : domain_of_place(scene, zone, whole),
+                                           : domain_of_place(scene, k, whole),
                       k});
   }
   require_apart(scene, places, volume_of(whole));

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "bernal/core/dimension.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/scene/sphere_classes.hpp"
 #include "domain/volume_below.hpp"

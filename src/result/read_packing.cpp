@@ -87,7 +87,7 @@ Scene scene_of_result(const std::filesystem::path& folder) { return scene_in(fol
 
 Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder) {
   SpheresFile read = spheres_in(scene, folder);
-  classes_in(scene, read);
+  classes_in(scene, read);  // refuses those that the scene does not have
   return std::move(read.spheres);
 }
 

@@ -11,6 +11,7 @@
 
 #include "bernal/core/text.hpp"
 #include "plan/made_plan.hpp"
+#include "run/begin_packing.hpp"
 
 namespace bernal {
 namespace {
@@ -86,9 +87,8 @@ class Search {
   }
 
   RunOptions sub_options(int n) const {
-    constexpr std::uint64_t seeds = std::uint64_t{1} << 63;  // that a scene can hold
     const std::uint64_t first = options_.seed.value_or(plan_.scene.seed);
-    return {.seed = (first + static_cast<std::uint64_t>(n)) % seeds,
+    return {.seed = seed_of_run(first, static_cast<std::uint64_t>(n)),
             .threads = options_.threads,
             .monitor = {{}, options_.monitor.cancelled},
             .checkpoints = {},

@@ -1,7 +1,6 @@
 #include "run/run_zones.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -11,27 +10,10 @@
 #include "bernal/scene/sphere_classes.hpp"
 #include "plan/plan_zones.hpp"
 #include "run/begin_packing.hpp"
+#include "work/effect_log.hpp"
 
 namespace bernal {
 namespace {
-
-/// From what is there to what is not.
-int severity(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::converged:
-    case Outcome::imported:
-      return 0;
-    case Outcome::loose:
-      return 1;
-    case Outcome::full:
-      return 2;
-    case Outcome::hit_limit:
-      return 3;
-    case Outcome::cancelled:
-      break;
-  }
-  return 4;
-}
 
 class ZonedRun {
  public:
@@ -55,6 +37,7 @@ class ZonedRun {
       else
         packing_.reason += fmt::format("; {}: not begun", classes_[plan_.parts[k].sphere_class].name);
     wrap(packing_.spheres, packing_.domain);
+    packing_.effects = effects_.all();
     return std::move(packing_);
   }
 
@@ -93,29 +76,20 @@ class ZonedRun {
       milestone.seconds += packing_.seconds;
       packing_.history.push_back(std::move(milestone));
     }
-    for (const Effect& effect : packed.effects) {
-      const auto same = std::ranges::find(packing_.effects, effect.name, &Effect::name);
-      if (same == packing_.effects.end()) {
-        packing_.effects.push_back(effect);
-      } else {
-        same->calls += effect.calls;
-        same->seconds += effect.seconds;
-      }
-    }
+    for (const Effect& effect : packed.effects) effects_[effect.name] += effect;
     filled_ = packing_.packing_fraction();
     packing_.seconds += packed.seconds;
     Outcome outcome = packed.outcome;
     if (n == told_ && is_packed(outcome)) outcome = Outcome::full;
-    if (severity(outcome) > severity(packing_.outcome)) packing_.outcome = outcome;
+    packing_.outcome = std::max(packing_.outcome, outcome);  // they stand in the order of what is missing
     packing_.reason += fmt::format("{}{}, {} spheres: {}", packing_.reason.empty() ? "" : "; ",
                                    classes_[part.sphere_class].name, grouped(n - told_), packed.reason);
     told_ = n;
   }
 
   RunOptions sub_options(std::size_t k) const {
-    constexpr std::uint64_t seeds = std::uint64_t{1} << 63;  // that a scene can hold
     RunOptions options{
-        .seed = (packing_.seed + k) % seeds,
+        .seed = seed_of_run(packing_.seed, k),
         .threads = options_.threads,
         .monitor = {[this, k](const Progress& progress) { tell(progress, k); }, options_.monitor.cancelled},
         .checkpoints = {},
@@ -143,6 +117,7 @@ class ZonedRun {
   const RunOptions& options_;
   const std::vector<SphereClass> classes_;
   Packing packing_;
+  EffectLog effects_;
   double filled_ = 0;
   std::size_t told_ = 0;  // spheres of the zones that the reason tells of
 };

@@ -279,9 +279,8 @@ void complete_output(Output& output, const Scene& scene) {
                  fmt::format("\"density\" in {} is an older name of \"material_density\"; give one "
                              "of them",
                              section.name));
-  constexpr double glass = 2500;
   if (!output.material_density && table.keys.find("material_density"))
-    output.material_density = scene.material_density.value_or(glass);
+    output.material_density = usual_density(scene);
   for (const Key& key : table.keys.keys)
     if (const auto users = contacts_that_use(key, output);
         !users.empty() && section.locations.keys.contains(key.name))

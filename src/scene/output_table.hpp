@@ -10,6 +10,13 @@
 
 namespace bernal {
 
+/// What an output takes for the density of its spheres where it is told none: the scene's, else that of
+/// glass.
+inline double usual_density(const Scene& scene) {
+  constexpr double glass = 2500;
+  return scene.material_density.value_or(glass);
+}
+
 /// The files of a result, all that it ever has.
 inline constexpr std::array<std::string_view, 10> names_of_result = {
     "scene.toml",  "spheres.csv", "spheres.npy", "classes.npy", "spheres.vtp",

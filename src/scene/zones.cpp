@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,6 +18,13 @@
 
 namespace bernal {
 namespace {
+
+/// What the spheres of a zone are made of, and their density: where it says neither that of the whole.
+std::pair<std::string, std::optional<double>> material_in(const Scene& whole, const Scene& of) {
+  const bool says_nothing = of.material.empty() && !of.material_density;
+  return {says_nothing ? whole.material : of.material,
+          of.material_density ? of.material_density : whole.material_density};
+}
 
 /// What all spheres of a scene have in common.
 void take_from_whole(Scene& of, const Scene& whole) {
@@ -32,8 +41,7 @@ void take_from_whole(Scene& of, const Scene& whole) {
   for (const char* key : {"unit", "seed", "gap", "wall_gap", "walls", "overlap"})
     if (const auto said = whole.locations.keys.find(key); said != whole.locations.keys.end())
       of.locations.keys.insert(*said);
-  if (of.material.empty() && !of.material_density) of.material = whole.material;
-  if (!of.material_density) of.material_density = whole.material_density;
+  std::tie(of.material, of.material_density) = material_in(whole, of);
   // A bed as dense as the whole, where it says nothing; how high it is, and its top, are the last one's.
   BedTarget& bed = of.target.bed;
   if (bed.porosity || of.target.bulk_density) return;
@@ -179,8 +187,8 @@ void complete_zones(Scene& scene) {
 std::vector<SphereClass> classes_of(const Scene& scene) {
   std::vector<SphereClass> classes;
   for (std::size_t k = 0; k < scene.zones.size(); ++k) {
-    const Scene of = scene_of_zone(scene, scene.zones[k]);
-    classes.push_back({name_of_zone(scene, k), of.material, of.material_density});
+    auto [material, density] = material_in(scene, scene.zones[k].spheres);
+    classes.push_back({name_of_zone(scene, k), std::move(material), density});
   }
   if (!scene.draws()) return classes;
   if (const auto* sizes = std::get_if<Classes>(&scene.sizes);
