@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -81,12 +82,27 @@ struct CheckpointOptions {
   std::function<bool()> due = {};
 };
 
+struct Packing;
+
+/// The packings inside the spheres of one class, as `Scene::inside` asks for: each of `spheres` holds one of
+/// `templates`, turned about its centre.
+struct PackingsInside {
+  std::uint32_t of_class = 0, layer = 0;  ///< places in `classes_of(scene)` and in the layers of that class
+  /// Packed in balls about the origin, in the unit of their own scene; the scene that packs them has that
+  /// ball as its container.
+  std::vector<std::shared_ptr<const Packing>> templates = {};
+  std::vector<std::uint32_t> spheres = {};            ///< that are filled, ascending
+  std::vector<std::uint32_t> which = {};              ///< of `templates`, one a filled sphere
+  std::vector<std::array<double, 4>> rotations = {};  ///< unit quaternions w, x, y, z, one a filled sphere
+};
+
 /// The result of a run: plain data. Lengths are in the scene's unit and frame. `spheres` has the dimension of
 /// the domain.
 struct Packing {
   Spheres<dynamic> spheres;  ///< centres in one period, see `wrap`
   /// Of each sphere, its place in `classes_of(scene)`; empty where the scene tells no spheres apart.
   std::vector<std::uint32_t> classes = {};
+  std::vector<PackingsInside> inside = {};  ///< one for each of `Scene::inside`
   Domain domain;
   /// Of the domain, see `Plan::container`, so that measuring need not make it again; may be null.
   std::shared_ptr<const Container> container = {};

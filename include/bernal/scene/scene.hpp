@@ -17,6 +17,7 @@
 #include "bernal/domain/mesh_file.hpp"
 #include "bernal/scene/bed_target.hpp"
 #include "bernal/scene/engine.hpp"
+#include "bernal/scene/inside.hpp"
 #include "bernal/scene/shapes.hpp"
 #include "bernal/scene/sizes.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
@@ -179,6 +180,8 @@ struct Scene {
   std::optional<double> material_density = {};  ///< of the spheres, in kg/m³
   std::vector<Zone>
       zones;  ///< parts of the container with spheres of their own; without = {}, as Mixture::of
+  std::vector<Layer> layers = {};   ///< of all spheres; those of one class of sizes stand in `Classes`
+  std::vector<Inside> inside = {};  ///< packings inside the spheres of a class
   Start start = {};
   std::optional<SceneEngine> engine = {};
   double gap = 0;       ///< least distance between the surfaces of two spheres, or of one and its own image

@@ -33,23 +33,39 @@ struct Constant {
   double value = 0;
 };
 
+struct Normal {
+  double mean = 0, sd = 0;
+  Basis basis = Basis::number;
+  std::optional<double> min = {}, max = {};
+};
+
+/// A concentric layer of spheres: the innermost is a ball, the others are shells, in order from the centre
+/// out. Of `thickness`, `radius` and `share` at most one is given; of the layers of a sphere at most one has
+/// none of them, and takes what the others leave.
+struct Layer {
+  std::string name = {};                        ///< "kernel", "buffer", "core", "interphase"
+  std::string material = {};                    ///< by name; if empty the layer's own
+  std::optional<double> material_density = {};  ///< in kg/m³
+  /// A length, for which `sd` is 0, or a distribution by number that each sphere draws from, keyed by the
+  /// seed and its number.
+  std::optional<Normal> thickness = {};
+  std::optional<double> radius = {};  ///< where the layer ends, measured from the centre
+  std::optional<double> share = {};   ///< of the sphere's volume
+  Locations locations = {};
+};
+
 /// Materials may differ from class to class: shares by mass are then divided by their densities, in kg/m³.
 struct Classes {
   std::vector<double> values = {}, shares = {};
   Basis basis = Basis::number;
   std::vector<double> material_densities = {};  ///< one a class, or none where it does not matter
   std::vector<std::string> names = {};          ///< one a class, or none
+  std::vector<std::vector<Layer>> layers = {};  ///< one list a class, which may be empty, or none
 };
 
 struct Uniform {
   double min = 0, max = 0;
   Basis basis = Basis::number;
-};
-
-struct Normal {
-  double mean = 0, sd = 0;
-  Basis basis = Basis::number;
-  std::optional<double> min = {}, max = {};
 };
 
 /// By `median` and `sigma`, by `mean` and standard deviation `sd` of the size, or by the means d43 and d32.

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "bernal/scene/packing.hpp"
+
+namespace bernal {
+
+/// The layers of the spheres of a packing, from the centre out. Lengths are in the scene's unit.
+struct SphereLayers {
+  /// Of each class, in the order of `classes_of`, what its layers are; empty of a class without.
+  std::vector<std::vector<Layer>> of_class;
+  std::vector<std::size_t> first;  ///< one entry a sphere, and one more: where its radii begin in `outer`
+  std::vector<double> outer;       ///< where each layer ends: ascending, the last is the sphere's radius
+
+  bool empty() const { return outer.empty(); }
+  /// Of one sphere, from the centre out; empty where it has no layers.
+  std::span<const double> of(std::size_t sphere) const {
+    return {outer.data() + first[sphere], outer.data() + first[sphere + 1]};
+  }
+};
+
+/// Nothing is made where the scene names no layers. Drawn thicknesses are keyed by the seed and the number of
+/// the sphere, so that they are the same whenever they are asked for. Throws Error{bad_packing} for layers
+/// that are thicker than a sphere. Cost: O(N).
+SphereLayers layers_of(const Packing&);
+
+}  // namespace bernal
