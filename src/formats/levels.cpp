@@ -102,7 +102,7 @@ class Builder {
 
  private:
   /// Of spheres that are not told apart, or hold no layers.
-  std::uint32_t material_of(const Scene& scene, const std::vector<SphereClass>& classes, std::uint32_t c) {
+  std::uint32_t matter_of(const Scene& scene, const std::vector<SphereClass>& classes, std::uint32_t c) {
     if (c < classes.size()) {
       const SphereClass& of = classes[c];
       const std::string& name = !of.material.empty() ? of.material : of.name;
@@ -149,8 +149,7 @@ class Builder {
     std::vector<std::vector<std::uint32_t>> layer_materials(layers.of_class.size());
     for (std::size_t c = 0; c < layers.of_class.size(); ++c)
       for (const Layer& layer : layers.of_class[c])
-        layer_materials[c].push_back(
-            materials_.of(layer.material.empty() ? layer.name : layer.material, layer.material_density));
+        layer_materials[c].push_back(materials_.of(material_of(layer), layer.material_density));
 
     std::vector<SphereContent> held(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -158,7 +157,7 @@ class Builder {
       const std::span<const double> outer = layers.empty() ? std::span<const double>() : layers.of(i);
       const double r = level.spheres.r[i];
       if (outer.empty()) {
-        held[i] = {.outer = {r}, .materials = {material_of(packing.scene, classes, c)}};
+        held[i] = {.outer = {r}, .materials = {matter_of(packing.scene, classes, c)}};
         continue;
       }
       // Where a treatment of contacts has shrunk a sphere, its layers have shrunk with it.
