@@ -48,9 +48,10 @@ static void to_json(Json& json, const Certificate& c) {
   json["seconds"] = c.seconds;
 }
 
-std::string certificate_as_json(const Certificate& c, const std::optional<Rest>& rest,
-                                const Spheres<dynamic>& spheres) {
+std::string certificate_as_json(const Certificate& c, const std::optional<ZonesInPlace>& zones,
+                                const std::optional<Rest>& rest, const Spheres<dynamic>& spheres) {
   Json json = c;
+  if (zones) json["misplaced"] = zones->misplaced;
   if (rest) {
     json["settled"] = {{"at_rest", rest->unsettled == 0},
                        {"unsettled", rest->unsettled},
