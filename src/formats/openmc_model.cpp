@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/lower_case.hpp"
+#include "bernal/core/text.hpp"
 #include "formats/level_lattice.hpp"
 #include "formats/level_marks.hpp"
 #include "formats/level_walls.hpp"
+#include "formats/templates.hpp"
 #include "formats/text_file.hpp"
 
 namespace bernal {
@@ -262,6 +263,15 @@ std::string settings_text(const Exported& file) {
       row_of(bounds.lower), row_of(bounds.upper));
 }
 
+std::string build_script(const Exported& file, const LevelModel& model) {
+  std::vector<std::string_view> names;
+  for (const LevelMaterial& material : model.materials) names.push_back(material.name);
+  return filled(openmc_build_py,
+                {{"TITLE", file.title()},
+                 {"LEVELS", fmt::format("{} spheres, {}", grouped(file.size()), model.in_words())},
+                 {"MATERIALS", fmt::format("{}", fmt::join(names, ", "))}});
+}
+
 }  // namespace
 
 std::string write_openmc_model(const Exported& file, StagedFolder& staged) {
@@ -286,6 +296,7 @@ std::string write_openmc_model(const Exported& file, StagedFolder& staged) {
     write_to(name + "/geometry.xml", geometry);
     write_to(name + "/materials.xml", [&](TextFile& out) { out.add(materials_text(model)); });
     write_to(name + "/settings.xml", [&](TextFile& out) { out.add(settings_text(file)); });
+    staged.write(name + "/build.py", build_script(file, model));
   }
   return model.in_words();
 }

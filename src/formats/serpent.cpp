@@ -141,16 +141,8 @@ class SerpentInput {
   std::string text_;
 };
 
-void require_serpent_period(const Exported& file) {
-  if (const auto* cylinder = std::get_if<Cylinder>(&file.domain); cylinder && cylinder->periodic)
-    throw Error(ErrorCode::bad_scene,
-                "the format serpent repeats boxes alone, and this is a cylinder that repeats itself; openmc "
-                "holds it",
-                file.output.locations.whole);
-}
-
 std::string write_serpent(const Exported& file, StagedFolder& staged) {
-  require_serpent_period(file);
+  require_boxes_repeat(file);
   const LevelModel model = levels_of(file);
   SerpentInput input(file, model);
   std::vector<std::filesystem::path> beside;
