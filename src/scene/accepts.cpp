@@ -137,6 +137,7 @@ const std::map<Type, Rule> rules = {
     {Type::distribution, {"a positive length or a table { distribution = … }", are_sizes}},
     {Type::parts, {"an array of lengths and tables { distribution = … }", are_sizes, false}},
     {Type::solids, {"an array of files and of tables { kind = … }", is_file, false}},
+    {Type::insides, {"a table { scene = … } or an array of such", [](const Value&) { return false; }, false}},
 };
 
 const Rule& rule_of(const Key& key) {

@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "scene/complete_sizes.hpp"
+#include "scene/insides.hpp"
 #include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
@@ -348,6 +349,7 @@ void complete(Scene& scene) {
                 scene);
   complete_stages(scene);
   complete_zones(scene);
+  check_insides(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});

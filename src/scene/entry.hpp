@@ -48,6 +48,7 @@ enum class Type {
   distribution,  ///< a length, or a table of one of the distributions
   parts,         ///< array of distributions
   solids,        ///< array of files of closed surfaces and of tables of containers, or one file
+  insides,       ///< table of what lies inside spheres, or array of such
 };
 
 struct Range {

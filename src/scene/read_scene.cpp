@@ -10,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "bernal/core/text.hpp"
+#include "scene/insides.hpp"
 #include "scene/keys_from_columns.hpp"
 #include "scene/known_words.hpp"
 #include "scene/output_table.hpp"
@@ -41,7 +42,8 @@ Names names_of(const auto& entries) {
 /// the file, the line and the remedy; `where` is what it calls the table: "[container]".
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string()) {}
+  explicit Reader(const std::filesystem::path& file, const std::optional<BallOfSphere>& ball = {})
+      : path_(file), file_(file.string()), ball_(ball) {}
 
   Scene read(const toml::table& root) {
     Scene scene;
@@ -89,10 +91,15 @@ class Reader {
   }
 
   void read_container(const toml::table& root, Scene& scene) const {
+    if (ball_ && !root.contains("container")) {
+      put_into_ball(scene, *ball_);
+      return;
+    }
     const toml::table& table = table_in(root, "container");
     read_solid(table, known_words_in(schema::container_entries()), "[container]", scene.container);
     if (!scene.container.meshes().empty() && !root.contains("unit"))
       fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
+    if (ball_) put_into_ball(scene, *ball_);
   }
 
   /// A container or an obstacle; `kinds` may stand there.
@@ -157,10 +164,31 @@ class Reader {
     if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start") && !has_zones)
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
+    if (const toml::node* inside = table.get("inside")) read_insides(*inside, scene);
     scene.target.where = at(table.source());
     for (const char* key : {"bed", "top", "height", "bed_layers", "porosity", "bulk_density", "count", "mass",
                             "packing_fraction", "fill"})
       if (table.contains(key)) scene.target.where = scene.locations.of(key);
+  }
+
+  /// A table, or an array of them.
+  void read_insides(const toml::node& given, Scene& scene) const {
+    const toml::array* array = given.as_array();
+    const auto refuse = [&](const toml::node& node) {
+      fail(node.source(), "\"inside\" in [spheres] must be {}, not {}",
+           schema::expectation(schema::insides_key()), written(node));
+    };
+    if (array ? array->empty() : !given.is_table()) refuse(given);
+    for (std::size_t k = 0; k < (array ? array->size() : 1); ++k) {
+      const toml::node& node = array ? (*array)[k] : given;
+      if (!node.is_table()) refuse(node);
+      Inside& made = scene.inside.emplace_back();
+      const std::string where = section_name_of_inside(scene, k);
+      read(*node.as_table(), schema::inside_entry(), {}, where, &made, made.locations);
+      if (made.scene.empty())
+        fail(node.source(), "missing \"scene\" in {}; it names the scene of what lies inside", where);
+      made.scene = beside(made.locations.of("scene"), made.scene);
+    }
   }
 
   void read_zones(const toml::table& root, Scene& scene) {
@@ -371,12 +399,25 @@ class Reader {
 
   std::filesystem::path path_;
   std::string file_;
-  Unit unit_ = {};  ///< of the scene, once it is read
+  std::optional<BallOfSphere> ball_;  ///< that takes the place of its container
+  Unit unit_ = {};                    ///< of the scene, once it is read
   bool sizes_are_diameters_ = false;
   mutable SaidInPhi in_phi_;
 };
 
+std::string read_text_of_scene(const std::filesystem::path& file) {
+  constexpr std::streamsize largest = 1 << 20;
+  return read_toml_text(file, "scene", largest, "no scene is; is it the mesh?");
+}
+
 }  // namespace
+
+Scene read_scene_inside(const std::filesystem::path& file, const BallOfSphere& ball) {
+  const std::string text = read_text_of_scene(file);
+  if (is_blank(text))
+    throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [spheres]", {file.string()});
+  return Reader(file, ball).read(parse_toml(text, file));
+}
 
 Scene scene_of_table(const toml::table& root, const std::filesystem::path& file) {
   return Reader(file).read(root);
@@ -389,9 +430,6 @@ Scene parse_scene(std::string_view toml, const std::filesystem::path& name) {
   return scene_of_table(parse_toml(toml, name), name);
 }
 
-Scene read_scene(const std::filesystem::path& file) {
-  constexpr std::streamsize largest = 1 << 20;
-  return parse_scene(read_toml_text(file, "scene", largest, "no scene is; is it the mesh?"), file);
-}
+Scene read_scene(const std::filesystem::path& file) { return parse_scene(read_text_of_scene(file), file); }
 
 }  // namespace bernal

@@ -20,6 +20,10 @@ const std::array<const Entry*, 3>& own_entries();
 const Entry& zone_entry();
 const Entry& spheres_of_zone_entry();
 
+/// Of an Inside, and the key of [spheres] that holds them.
+const Entry& inside_entry();
+Key insides_key();
+
 /// In the order of the alternatives of SceneContainer, SceneSizes and SceneEngine.
 const std::vector<Entry>& container_entries();
 const std::vector<Entry>& size_entries();

@@ -14,8 +14,8 @@ using schema::Entry;
 constexpr std::string_view type_words[] = {
     "flag",     "integer", "number",  "length", "word",         "file",   "direction", "push",
     "position", "text",    "names",   "corner", "extents",      "points", "lines",     "coordinates",
-    "lengths",  "shares",  "amounts", "axes",   "distribution", "parts",  "solids"};
-static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::solids) + 1);
+    "lengths",  "shares",  "amounts", "axes",   "distribution", "parts",  "solids",    "insides"};
+static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::insides) + 1);
 /// In the order of schema::Acts.
 constexpr std::string_view acts_words[] = {"everywhere", "in_bed", "in_box"};
 /// In the order of Quantity.

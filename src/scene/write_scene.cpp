@@ -104,6 +104,16 @@ std::vector<std::string> assignments_of(const SceneContainer& container) {
   return all;
 }
 
+/// The key `inside` and its value; nothing where the scene has none.
+std::string insides_as_toml(const Scene& scene) {
+  std::vector<std::string> tables;
+  for (const Inside& inside : scene.inside)
+    tables.push_back(fmt::format("{{ {} }}", fmt::join(assignments(schema::inside_entry(), &inside), ", ")));
+  if (tables.empty()) return {};
+  return tables.size() == 1 ? fmt::format("inside = {}\n", tables.front())
+                            : fmt::format("inside = [{}]\n", fmt::join(tables, ", "));
+}
+
 std::string container_as_toml(const SceneContainer& container) {
   return fmt::format("[container]\nkind = {}\n{}\n", toml_string(schema::entry_of(container).name),
                      fmt::join(assignments_of(container), "\n"));
@@ -144,9 +154,12 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
   if (!folder.empty())
     for (std::filesystem::path* const file : files_named_in(named))
       if (!is_given(scene, *file)) *file = std::filesystem::proximate(*file, folder);
-  std::string out = fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
-                                container_as_toml(named.container), lines(schema::spheres_entry(), &named),
-                                lines(schema::accuracy_entry(), &scene));
+  if (!folder.empty())
+    for (Inside& inside : named.inside) inside.scene = std::filesystem::proximate(inside.scene, folder);
+  std::string out =
+      fmt::format("{}\n{}\n[spheres]\n{}{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
+                  container_as_toml(named.container), lines(schema::spheres_entry(), &named),
+                  insides_as_toml(named), lines(schema::accuracy_entry(), &scene));
   for (const Zone& zone : named.zones)
     out += fmt::format("\n[[zone]]\n{}{}", lines(schema::zone_entry(), &zone),
                        lines(schema::spheres_of_zone_entry(), &zone.spheres));
