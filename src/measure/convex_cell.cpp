@@ -6,10 +6,9 @@
 
 namespace bernal {
 
-void ConvexCell::reset(const Vector<3>& lower, const Vector<3>& upper, const std::array<Label, 3>& sides) {
+void ConvexCell::reset(const Vector<3>& lower, const Vector<3>& upper, const std::array<Label, 6>& sides) {
   resize(8);
-  labels_.clear();
-  for (const Label side : sides) labels_.insert(labels_.end(), 2, side);  // below, above
+  labels_.assign(sides.begin(), sides.end());
   for (unsigned k = 0; k < 8; ++k) {
     const auto above = [&](unsigned axis) { return k >> axis & 1; };
     // Anticlockwise these are the edges along x, y, z, or x, z, y; the other way at the other end.

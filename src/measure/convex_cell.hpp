@@ -17,11 +17,12 @@ namespace bernal {
 class ConvexCell {
  public:
   /// Identifies the owner of a face, as the caller defines it. Negative labels are not neighbours.
-  using Label = std::int32_t;
+  using Label = std::int64_t;
   static constexpr Label wall = -1;
 
-  /// Resets to a box, with one label for the two sides normal to each axis. Precondition: lower < upper.
-  void reset(const Vector<3>& lower, const Vector<3>& upper, const std::array<Label, 3>& sides);
+  /// Resets to a box, with a label for each side: below and above along x, then along y and z. Precondition:
+  /// lower < upper.
+  void reset(const Vector<3>& lower, const Vector<3>& upper, const std::array<Label, 6>& sides);
 
   /// Keeps the points p with p·normal <= offset. Corners on the plane stay. Returns false, without change, if
   /// no corner has p·normal > offset + slack. Cost: about 2 ns a corner, and 20 for each that is cut off.
@@ -31,7 +32,12 @@ class ConvexCell {
   std::span<const Vector<3>> corners() const { return corners_; }
   /// Calls visit(corners) for every loop of every face, anticlockwise seen from outside.
   template <class Visit>
-  void for_each_loop(Visit&& visit) const;
+  void for_each_loop(Visit&& visit) const {
+    for_each_face([&](Label, std::span<const std::uint32_t> corners) { visit(corners); });
+  }
+  /// The same, with the label of the face: visit(label, corners).
+  template <class Visit>
+  void for_each_face(Visit&& visit) const;
 
   double volume() const;
   /// The planes of faces with an area: the cell is where p·normal <= offset.
@@ -77,7 +83,7 @@ class ConvexCell {
 };
 
 template <class Visit>
-void ConvexCell::for_each_loop(Visit&& visit) const {
+void ConvexCell::for_each_face(Visit&& visit) const {
   marks_.assign(half_edges(), 0);
   for (HalfEdge first = 0; first < half_edges(); ++first) {
     if (!is_half_edge(first) || marks_[first] != 0) continue;
@@ -86,7 +92,7 @@ void ConvexCell::for_each_loop(Visit&& visit) const {
       marks_[edge] = 1;
       loop_.push_back(corner_of(edge));
     }
-    visit(std::span<const std::uint32_t>(loop_));
+    visit(labels_[face_[first]], std::span<const std::uint32_t>(loop_));
   }
 }
 

@@ -18,6 +18,10 @@ constexpr std::size_t cells_a_piece = 64;
 /// Relative to the distance of the farthest corner: smaller cuts are rounding.
 constexpr double rounding_of_cuts = 1e-12;
 
+// A label is a sphere's number and the digits of its image in the base of three.
+constexpr ConvexCell::Label label_base = 27, own_image = 13;
+constexpr std::array<ConvexCell::Label, 3> along_axis = {1, 3, 9};
+
 class Diagram {
  public:
   Diagram(const Spheres<3>& spheres, const CellBox& box, const VisitCell& visit)
@@ -41,7 +45,7 @@ class Diagram {
     double distance;  ///< from the cell's centre
     Vector<3> normal;
     double offset;
-    std::uint32_t place;
+    ConvexCell::Label label;
   };
   /// A leaf moved by `shift`, with a lower bound on the distance of its spheres' planes.
   struct Leaf {
@@ -59,20 +63,29 @@ class Diagram {
   void begin(ConvexCell& cell, std::uint32_t place) const {
     Vector<3> lower = box_.bounds.lower - tree_.center(place),
               upper = box_.bounds.upper - tree_.center(place);
-    std::array<ConvexCell::Label, 3> sides;
+    std::array<ConvexCell::Label, 6> sides;
     for (int k = 0; k < 3; ++k) {
-      sides[k] = ConvexCell::wall;
+      sides[2 * k] = ConvexCell::wall - 2 * k;
+      sides[2 * k + 1] = sides[2 * k] - 1;
       if (k >= box_.dimension) {
         lower[k] = -0.5;
         upper[k] = 0.5;
       } else if (box_.boundary.repeats(k)) {  // half-way to the cell's own images
         lower[k] = -0.5 * box_.boundary.edges[k];
         upper[k] = 0.5 * box_.boundary.edges[k];
-        sides[k] = static_cast<ConvexCell::Label>(place);
+        sides[2 * k] = label_of(place, -box_.boundary.edges[k] * Vector<3>::Unit(k));
+        sides[2 * k + 1] = label_of(place, box_.boundary.edges[k] * Vector<3>::Unit(k));
       }
     }
     cell.reset(lower, upper, sides);
     if (box_.trim) box_.trim(tree_.center(place), cell);
+  }
+
+  ConvexCell::Label label_of(std::uint32_t place, const Vector<3>& shift) const {
+    ConvexCell::Label label = label_base * tree_.id(place) + own_image;
+    for (std::size_t k = 0; k < 3; ++k)
+      label += shift[k] > 0 ? along_axis[k] : shift[k] < 0 ? -along_axis[k] : 0;
+    return label;
   }
 
   /// Distance of its farthest corner; below any plane's if the cell is empty.
@@ -138,8 +151,7 @@ class Diagram {
       planes.pop_back();
       if (!(plane.distance < reach)) break;
       const double slack = rounding_of_cuts * reach * plane.normal.norm();
-      if (piece.cell.cut(plane.normal, plane.offset, static_cast<ConvexCell::Label>(plane.place), slack))
-        reach = reach_of(piece.cell);
+      if (piece.cell.cut(plane.normal, plane.offset, plane.label, slack)) reach = reach_of(piece.cell);
     }
   }
 
@@ -156,9 +168,9 @@ class Diagram {
       const double offset = 0.5 * (squared + (r - r_other) * (r + r_other));
       if (squared > 0) {
         if (offset > 0 && offset * offset >= reach * reach * squared) continue;  // saves the root
-        planes.push_back({offset / std::sqrt(squared), normal, offset, other});
+        planes.push_back({offset / std::sqrt(squared), normal, offset, label_of(other, shift)});
       } else if (r_other > r || (r_other == r && tree_.id(other) < tree_.id(place))) {
-        planes.push_back({-infinite, normal, -1, other});
+        planes.push_back({-infinite, normal, -1, label_of(other, shift)});
       }
     }
   }
@@ -171,6 +183,13 @@ class Diagram {
 };
 
 }  // namespace
+
+CellNeighbour neighbour_of(ConvexCell::Label label) {
+  CellNeighbour made{static_cast<std::uint32_t>(label / label_base), {}};
+  for (std::size_t k = 0; k < 3; ++k)
+    made.image[k] = static_cast<int>(label % label_base / along_axis[k] % 3) - 1;
+  return made;
+}
 
 void for_each_power_cell(const Spheres<3>& spheres, const CellBox& box, std::size_t most,
                          const VisitCell& visit) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 
@@ -16,6 +17,15 @@ struct CellBox {
   /// If set, cuts off unneeded parts of the cell about `center` beforehand.
   std::function<void(const Vector<3>& center, ConvexCell&)> trim = {};
 };
+
+/// Whose cell is behind a face: that of a sphere, moved by so many periods along each axis.
+struct CellNeighbour {
+  std::uint32_t sphere;
+  std::array<int, 3> image;  ///< -1, 0 or 1 along periodic axes, counted between the centres in the period
+};
+/// What the label of a face means. Precondition: it is not negative. Those of the walls of the box are -1 to
+/// -6: below and above along x, then along y and z.
+CellNeighbour neighbour_of(ConvexCell::Label label);
 
 /// Receives the cell of a sphere, possibly empty, in coordinates about its centre in the period.
 using VisitCell = std::function<void(std::uint32_t sphere, const Vector<3>& center, const ConvexCell&)>;

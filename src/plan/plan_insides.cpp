@@ -46,7 +46,7 @@ RadiiOfClass of_distribution(const SizeDistribution& radii, double count) {
 RadiiOfClass radii_of_class(const Plan& plan, std::uint32_t of_class) {
   const Scene& scene = plan.scene;
   const auto* classes = std::get_if<Classes>(&scene.sizes);
-  if (scene.zones.empty() && classes && !classes->names.empty()) {
+  if (scene.zones.empty() && classes && !(classes->names.empty() && classes->layers.empty())) {
     const double radius = scene.scale * classes->values[of_class] / (scene.sizes_are_diameters ? 2 : 1);
     std::vector<double> shares = shares_of_one_density(*classes);
     double all = 0;
@@ -81,7 +81,7 @@ bool is_drawn(const Layer& layer) { return layer.thickness && layer.thickness->s
 
 /// Whether balls of a class differ from sphere to sphere.
 bool differ(const Scene& scene, std::uint32_t of_class, const RadiiOfClass& radii) {
-  const std::vector<Layer>& layers = layers_in(scene, of_class);
+  const std::vector<Layer> layers = layers_in(scene, of_class);
   if (layers.empty()) return radii.least < radii.largest;
   if (is_drawn(layers.front())) return true;
   if (layers.front().radius) return false;

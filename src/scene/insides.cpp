@@ -9,6 +9,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/sphere_classes.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "scene/known_words.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/toml_text.hpp"
@@ -48,15 +49,11 @@ std::uint32_t class_of(const Scene& scene, const Inside& inside, const std::vect
                      toml_string(inside.of_class),
                      sizes ? "give the sizes \"names\", one a class"
                            : "leave \"class\" out, and all spheres are filled"));
-  if (sizes && !sizes->layers.empty())
-    fail(inside, "",
-         "\"inside\" fills a class of sizes that have layers of their own, and none has a name: give the "
-         "sizes \"names\", one a class, and \"inside\" its \"class\"");
   return 0;
 }
 
 std::uint32_t innermost_layer(const Scene& scene, const Inside& inside, std::uint32_t of_class) {
-  const std::vector<Layer>& layers = layers_in(scene, of_class);
+  const std::vector<Layer> layers = layers_in(scene, of_class);
   if (layers.empty() && !inside.layer.empty())
     fail(
         inside, "layer",
@@ -76,18 +73,9 @@ std::uint32_t innermost_layer(const Scene& scene, const Inside& inside, std::uin
 
 }  // namespace
 
-const std::vector<Layer>& layers_in(const Scene& scene, std::uint32_t of_class) {
-  const auto* sizes = std::get_if<Classes>(&scene.sizes);
-  if (scene.zones.empty() && sizes && of_class < sizes->layers.size() && !sizes->names.empty())
-    return sizes->layers[of_class];
-  if (of_class < scene.zones.size() && !scene.zones[of_class].spheres.layers.empty())
-    return scene.zones[of_class].spheres.layers;
-  return scene.layers;
-}
-
-std::string section_name_of_inside(const Scene& scene, std::size_t k) {
-  return scene.inside.size() < 2 && k == 0 ? "inside of [spheres]"
-                                           : fmt::format("table {} of inside of [spheres]", k + 1);
+std::vector<Layer> layers_in(const Scene& scene, std::uint32_t of_class) {
+  const std::vector<std::vector<Layer>> all = layers_by_class(scene);
+  return of_class < all.size() ? all[of_class] : std::vector<Layer>();
 }
 
 FilledClass filled_class(const Scene& scene, const Inside& inside) {
@@ -124,9 +112,7 @@ void check_insides(const Scene& scene) {
          fmt::format("packings lie inside of spheres in three dimensions, not in {}: leave \"inside\" out",
                      scene.dimension()));
   std::set<std::uint32_t> filled;
-  for (std::size_t k = 0; k < scene.inside.size(); ++k) {
-    const Inside& inside = scene.inside[k];
-    schema::check(schema::inside_entry(), &inside, {section_name_of_inside(scene, k), inside.locations});
+  for (const Inside& inside : scene.inside) {
     const FilledClass of = filled_class(scene, inside);
     if (!filled.insert(of.of_class).second)
       fail(inside, "class",

@@ -24,9 +24,6 @@ Scene read_scene_inside(const std::filesystem::path& file, const BallOfSphere&);
 /// obstacles.
 void put_into_ball(Scene&, const BallOfSphere&);
 
-/// "inside of [spheres]", or "table 2 of inside of [spheres]", for errors.
-std::string section_name_of_inside(const Scene&, std::size_t k);
-
 /// What is filled: the place of a class in `classes_of(scene)`, 0 where that is empty, and of its innermost
 /// layer in its layers. Throws Error{bad_scene} for names that are not there.
 struct FilledClass {
@@ -37,7 +34,7 @@ struct FilledClass {
 FilledClass filled_class(const Scene&, const Inside&);
 
 /// The layers of the n-th class, or of all spheres where the scene tells none apart; empty without.
-const std::vector<Layer>& layers_in(const Scene&, std::uint32_t of_class);
+std::vector<Layer> layers_in(const Scene&, std::uint32_t of_class);
 
 /// Throws Error{bad_scene} where the scene's insides contradict each other or the rest of it, as far as no
 /// other file has to be read for that.

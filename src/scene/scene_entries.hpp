@@ -20,9 +20,8 @@ const std::array<const Entry*, 3>& own_entries();
 const Entry& zone_entry();
 const Entry& spheres_of_zone_entry();
 
-/// Of an Inside, and the key of [spheres] that holds them.
+/// Of an Inside.
 const Entry& inside_entry();
-Key insides_key();
 
 /// In the order of the alternatives of SceneContainer, SceneSizes and SceneEngine.
 const std::vector<Entry>& container_entries();

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/layer_entry.hpp"
 #include "scene/scale_entry.hpp"
 #include "scene/spheres_rules.hpp"
 
@@ -57,12 +58,14 @@ void spheres_rule(const Scene& scene, const Section& section) {
   if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
     section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
   start_rule(scene, section);
+  layers_rule(scene.layers, "layers", "layers in [spheres]", section);
 }
 
 void spheres_of_zone_rule(const Scene& scene, const Section& section) {
   if (scene.largest || (std::holds_alternative<Constant>(scene.sizes) && !scene.draws()))
     section.fail("", fmt::format("{} needs exactly one of \"radius\", \"diameter\"", section.name));
   amounts_rule(scene, section);
+  layers_rule(scene.layers, "layers", "layers in " + section.name, section);
 }
 
 }  // namespace
@@ -112,6 +115,9 @@ const Entry& spheres_entry() {
                                     above(0, largest_length))),
                  key(Type::text, &Scene::material, "material",
                      "what the spheres are made of, by name: a column of the result"),
+                 tables(&Scene::layers, layer_entry, "layers",
+                        "of every sphere, from the centre out; at most one has no thickness, radius or "
+                        "share, and takes what is left"),
                  size_key(false),
                  size_key(true),
                  scale_key(),
@@ -141,7 +147,8 @@ const Entry& spheres_entry() {
                  names(of_start(&Start::sha256), "start_sha256",
                        "of the start's file, as sha256sum prints it: other bytes are refused; a result "
                        "names it"),
-                 insides_key()},
+                 tables(&Scene::inside, inside_entry, "inside",
+                        "packings in the innermost layer of the spheres of a class")},
         .choices = {{{"count"},
                      {"packing_fraction"},
                      {"fill"},
@@ -176,14 +183,6 @@ const Entry& inside_entry() {
                         "has its own",
                         {1, 1e6})}});
   return made;
-}
-
-Key insides_key() {
-  return {.name = "inside",
-          .type = Type::insides,
-          .help =
-              "packings inside spheres: { scene = \"triso.toml\", class = \"pebble\", layer = \"fuel\", "
-              "templates = 10 }"};
 }
 
 const Entry& zone_entry() {

@@ -7,7 +7,7 @@
 namespace bernal {
 namespace convex_cell_test {
 
-constexpr std::array<ConvexCell::Label, 3> walls = {-1, -1, -1};
+constexpr std::array<ConvexCell::Label, 6> walls = {-1, -1, -1, -1, -1, -1};
 
 ConvexCell unit_cube() {
   ConvexCell cell;
