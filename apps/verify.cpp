@@ -14,6 +14,7 @@
 #include "bernal/measure/rest.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/json.hpp"
+#include "bernal/result/certify_levels.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -91,6 +92,10 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
   }
   say(stdout, "\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
       grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
+  for (const Certificate::Level& level : c.levels)
+    say(stdout, "inside     {}: {} pairs near, {} overlapping, {} walls near, {} protruding, {} misplaced\n",
+        level.name, grouped(level.pairs_tested), grouped(level.overlapping_pairs),
+        grouped(level.walls_tested), grouped(level.protruding_spheres), grouped(level.misplaced));
   for (const auto& [pair, ratio] : c.overlaps)
     say(stdout, "overlap    {}, ratio {:.3g}\n", pair_text(pair), ratio);
   for (const auto& [sphere, gap] : c.protrusions)
@@ -137,7 +142,10 @@ int verify(const VerifyCall& call) {
   const Scene scene = scene_of(call);
   say_if_unpublished(call.target);
   const bool streamed = is_streamed(call, scene);
-  const Spheres<dynamic> spheres = streamed ? Spheres<dynamic>()
+  const bool by_levels = is_folder(call.target) && !scene.inside.empty();
+  const Packing nest = by_levels ? read_packing(call.target) : Packing();
+  const Spheres<dynamic> spheres = streamed    ? Spheres<dynamic>()
+                                   : by_levels ? nest.spheres
                                    : is_folder(call.target)  // before another result replaces both
                                        ? read_spheres_of(scene, call.target)
                                        : read_columns_of(scene, call.target);
@@ -151,8 +159,9 @@ int verify(const VerifyCall& call) {
                                .list = listed(call.list),
                                .threads = call.threads,
                                .monitor = bar.monitor()};
-  Certificate certificate = streamed ? certify_in_slabs(scene, spheres_of_result(call.target), options)
-                                     : certify(spheres, domain, options);
+  Certificate certificate = streamed    ? certify_in_slabs(scene, spheres_of_result(call.target), options)
+                            : by_levels ? certify_levels(nest, options)
+                                        : certify(spheres, domain, options);
   certificate.statement += certified_walls(scene);
   std::optional<Rest> rest;
   if (call.settled) rest = rest_of(call, scene, spheres, domain, streamed);
