@@ -38,9 +38,9 @@ struct RadiiOfClass {
 };
 
 RadiiOfClass of_distribution(const SizeDistribution& radii, double count) {
-  constexpr double rare = 1e-4;
+  constexpr double seldom = 1e-4;
   return {std::max(radii.min(), radii.quantile(0)), radii.quantile(0.5),
-          std::isfinite(radii.max()) ? radii.max() : radii.quantile(1 - rare), count};
+          std::isfinite(radii.max()) ? radii.max() : radii.quantile(1 - seldom), count};
 }
 
 RadiiOfClass radii_of_class(const Plan& plan, std::uint32_t of_class) {
