@@ -114,6 +114,9 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "word") return one_of_words(key);
   if (key.type == "distribution" && key.words.empty()) return refers_to(key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
+  if (key.type == "tables") return array_of(refers_to(key.table), 1);
+  if (key.type == "table_lists") return array_of(array_of(refers_to(key.table), 0), 1);
+  if (!key.table.empty()) return either(refers_to(key.type), refers_to(key.table));
   const bool from_zero = key.type == "lengths" && key.min == 0;
   SceneSchema value = key.type == "number" || key.type == "integer"
                           ? within_range(key)
@@ -239,6 +242,8 @@ std::string scene_schema_as_json() {
     for (const ReferenceTable& table : group.tables) {
       if (table.name == "scene")
         scene = schema_of_table(table, "");
+      else if (group.name == "table")
+        definitions[table.name] = schema_of_table(table, "");
       else
         tables[table.name] = schema_of_table(table, "");
     }

@@ -30,6 +30,7 @@
 #include "run/run_stages.hpp"
 #include "run/run_zones.hpp"
 #include "run/take_coats_off.hpp"
+#include "scene/layers_of_scene.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/counted_container.hpp"
 #include "work/reporter.hpp"
@@ -188,6 +189,8 @@ class Run {
       require_fitting(scene_, plan_.domain, plan_.container, (1 - allowed) * supply->largest());
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, supply->largest());
+    if (!scene_.layers.empty())
+      require_layers_fit(scene_, supply->smallest() - source.coat, supply->largest() - source.coat);
     supply->divide_by(frame_.scale);
     task.frame = frame_;
     task.target.bed.above_ground /= frame_.scale;

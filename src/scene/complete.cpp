@@ -9,6 +9,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "scene/complete_sizes.hpp"
 #include "scene/known_words.hpp"
+#include "scene/layers_of_scene.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
@@ -346,6 +347,7 @@ void complete(Scene& scene) {
   if (!is_start_alone(scene) && (scene.draws() || scene.zones.empty()))
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
                 scene);
+  require_layers(scene);
   complete_stages(scene);
   complete_zones(scene);
   if (scene.engine)

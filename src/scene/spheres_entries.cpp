@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/layer_entry.hpp"
 #include "scene/scale_entry.hpp"
 #include "scene/spheres_rules.hpp"
 
@@ -57,12 +58,14 @@ void spheres_rule(const Scene& scene, const Section& section) {
   if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
     section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
   start_rule(scene, section);
+  layers_rule(scene.layers, "layers", "layers in [spheres]", section);
 }
 
 void spheres_of_zone_rule(const Scene& scene, const Section& section) {
   if (scene.largest || (std::holds_alternative<Constant>(scene.sizes) && !scene.draws()))
     section.fail("", fmt::format("{} needs exactly one of \"radius\", \"diameter\"", section.name));
   amounts_rule(scene, section);
+  layers_rule(scene.layers, "layers", "layers in " + section.name, section);
 }
 
 }  // namespace
@@ -112,6 +115,9 @@ const Entry& spheres_entry() {
                                     above(0, largest_length))),
                  key(Type::text, &Scene::material, "material",
                      "what the spheres are made of, by name: a column of the result"),
+                 tables(&Scene::layers, layer_entry, "layers",
+                        "of every sphere, from the centre out; at most one has no thickness, radius or "
+                        "share, and takes what is left"),
                  size_key(false),
                  size_key(true),
                  scale_key(),

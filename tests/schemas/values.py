@@ -21,6 +21,8 @@ GOOD = {
     "parts": ["[1, 2]", '[{ distribution = "mixture", of = [1, { distribution = "uniform", min = 1, '
               'max = 2 }], shares = [1, 2] }, 3]'],
     "solids": ['"part.stl"', '["part.stl", "other.stl"]', '[{ kind = "sphere", radius = 1 }, "part.stl"]'],
+    "tables": ['[{ name = "core" }]', '[{ name = "core" }, { name = "shell", share = 0.25, material_density = "2 g/cm3" }]'],
+    "table_lists": ['[[{ name = "core" }, { name = "shell", share = 0.25 }], []]'],
 }
 BAD = {
     "flag": ["1", '"true"', "[]"], "integer": ['"3"', "1.5", "true", "[1]", "1e31"], "number": ["true", "[1]", "{}"],
@@ -36,6 +38,9 @@ BAD = {
                      '{ distribution = "uniform", min = 1 }', '{ distribution = "constant", value = 1, sigma = 1 }'],
     "parts": ["[]", "1", "[0]", '[1, { distribution = "nonsense" }]'],
     "solids": ["[]", "1", '""', "[1]", '[{ kind = "periodic", edge = 1 }]', '[{ kind = "sphere" }]'],
+    "tables": ["[]", "1", '""', "[1]", "{}", "[{}]", '[{ name = "a", share = 1 }]', '[{ name = "a", sd = 1 }]',
+               '[{ name = "a", thickness = { mean = 1 } }]', '[{ name = "a", share = 0.5, thickness = 1 }]'],
+    "table_lists": ["[]", "1", "[1, 2]", '[{ name = "core" }, { name = "shell" }]', '[[{ share = 0.5 }], []]'],
 }
 
 
@@ -142,9 +147,10 @@ class Table:
 
 
 def tables_of(reference):
-    """All but zones: their keys are those of [spheres], and where they lie depends on the container."""
+    """All but zones, whose keys are those of [spheres], and whose place depends on the container, and but tables that
+    stand within others: their values are samples of the keys that they stand in."""
     for group in reference["groups"]:
-        if group["name"] == "zone":
+        if group["name"] in ("zone", "table"):
             continue
         for table in group["tables"]:
             yield Table(group["name"], group["selector"], table["name"],

@@ -97,6 +97,13 @@ std::string sample(const Key& key, int choice) {
       return "1";
     case Type::solids:
       return choice == 0 ? "[\"part.stl\", { kind = \"sphere\", radius = 0.1 }]" : "[\"/tmp/a.stl\"]";
+    case Type::tables:
+      return choice == 0 ? "[{ name = \"core\" }]"
+                         : "[{ name = \"core\", material = \"UO2\", material_density = 10800 }, "
+                           "{ name = \"shell\", share = 0.30000000000000004 }]";
+    case Type::table_lists:  // one for each of three
+      return "[[{ name = \"core\" }, { name = \"shell\", thickness = { distribution = \"normal\", "
+             "mean = 0.01, sd = 0.001, max = 0.012 } }], [], [{ name = \"core\" }]]";
   }
   return "";
 }
