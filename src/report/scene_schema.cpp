@@ -114,6 +114,7 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "word") return one_of_words(key);
   if (key.type == "distribution" && key.words.empty()) return refers_to(key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
+  if (key.type == "table") return refers_to(key.table);
   if (key.type == "tables") return array_of(refers_to(key.table), 1);
   if (key.type == "table_lists") return array_of(array_of(refers_to(key.table), 0), 1);
   if (!key.table.empty()) return either(refers_to(key.type), refers_to(key.table));

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/report/describe.hpp"
 #include "report/chart.hpp"
 #include "report/describe.hpp"
 #include "report/page.hpp"
@@ -100,9 +101,10 @@ void write_headline(Page& page, const Report& report) {
 
 /// What was asked of the cells, beside what there is.
 void write_cells(Page& page, const PackedCells& cells, std::string_view unit) {
-  page.add("<p>{}.</p>\n<table><tr><th>Share of the cells</th><th>wanted, {}³</th><th>by the radii</th>"
-           "<th>reached</th></tr>\n",
-           escaped(cells_in_words(cells)), escaped(unit));
+  page.add(
+      "<p>{}.</p>\n<table><tr><th>Share of the cells</th><th>wanted, {}³</th><th>by the radii</th>"
+      "<th>reached</th></tr>\n",
+      escaped(cells_in_words(cells)), escaped(unit));
   for (const auto& [share, wanted, by_radii, reached] : cells.quantiles)
     page.add("<tr><td>{:g} %</td><td>{:.4g}</td><td>{:.4g}</td><td>{:.4g}</td></tr>\n", 100 * share, wanted,
              by_radii, reached);
