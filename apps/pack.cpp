@@ -15,6 +15,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"
 #include "commands.hpp"
+#include "layer_text.hpp"
 #include "mesh_flags.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
@@ -45,6 +46,7 @@ void print_result(const Packing& packing, std::uint64_t spheres, double packing_
       spheres == 1 ? "1 sphere" : grouped(spheres) + " spheres",
       mass ? fmt::format(", {:.6g} kg", *mass) : std::string(), packing_fraction,
       packing.expected_packing_fraction, packing.seconds);
+  print_layers(stderr, packing);
   const std::string end = fmt::format("{}: {}", name_of(packing.outcome), packing.reason);
   say(stderr, "outcome    {}\n", falls_short(packing.outcome) ? in_amber(stderr, end) : end);
   if (packing.cells) say(stderr, "cells      {}\n", cells_in_words(*packing.cells));

@@ -39,7 +39,7 @@ std::vector<fs::path> sources_of(const Packing& packing) {
     if (!fs::is_regular_file(part, unknown)) return;
     for (const fs::path& file : files_of_part_beside(part)) files.push_back(file);
   };
-  for (const MeshFile* mesh : scene.container.meshes()) {
+  for (const MeshFile* mesh : scene.meshes()) {
     add_part(mesh->file);
     for (const fs::path& obstacle : mesh->obstacles) add_part(obstacle);
   }

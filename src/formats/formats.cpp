@@ -251,6 +251,11 @@ std::vector<ExportKey> export_keys() {
 }
 
 Output output_of(std::string_view format, const std::map<std::string, std::string>& words) {
+  if (format == "vtk" || format == "vtp" || format == "vtu")
+    refuse_word(fmt::format(
+        "unknown format \"{}\": a result has its spheres as spheres.vtp already, and vti is a grid "
+        "of voxels",
+        format));
   const OutputTable& table =
       named(output_tables(), format, [](const OutputTable& one) { return one.name(); });
   Output output{.format = std::string(format)};

@@ -70,7 +70,9 @@ JobPointer verify_job(const PackingPointer& of, std::optional<std::size_t> list,
                                        .monitor = monitor});
     if (certificate.cancelled) throw Cancelled();
     certificate.statement += certified_walls(scene);
-    return text(certificate_as_json(certificate));
+    const auto zones = zones_in_place(scene, of->domain, of->spheres, of->classes, {.threads = threads});
+    if (zones) add_to(certificate, *zones);
+    return text(certificate_as_json(certificate, zones));
   });
 }
 

@@ -41,9 +41,12 @@ std::string describe_parts(const Plan& plan) {
   std::string text;
   for (const PlannedPart& part : plan.parts) {
     const bool is_zone = part.sphere_class < plan.scene.zones.size();
-    const std::string place =
-        is_zone ? fmt::format("{}", fmt::join(plan.scene.zones[part.sphere_class].place, ", "))
-                : std::string();
+    std::string place;
+    if (is_zone) {
+      const Zone& zone = plan.scene.zones[part.sphere_class];
+      place =
+          zone.mesh ? plain_text(zone.mesh->file.string()) : fmt::format("{}", fmt::join(zone.place, ", "));
+    }
     text +=
         fmt::format("{:<9}  {}{}: {}; {}; about {:.3g} spheres\n", is_zone ? "zone" : "the rest",
                     classes[part.sphere_class].name, place.empty() ? "" : ", " + place,

@@ -121,8 +121,10 @@ void write_amount(Page& page, const Packing& packing) {
   const std::string amount = amount_in_words(packing.scene, 2 * mean, least == most, radii.size());
   if (!amount.empty()) page.add("<p>{}.</p>\n", escaped(amount));
   if (const auto mass = mass_of(packing, packing.packing_fraction()))
-    page.add("<p>The spheres weigh {:.6g} kg, of {:.6g} kg/m³ each.</p>\n", *mass,
-             *packing.scene.material_density);
+    page.add("<p>The spheres weigh {:.6g} kg{}.</p>\n", *mass,
+             packing.scene.material_density
+                 ? fmt::format(", of {:.6g} kg/m³ each", *packing.scene.material_density)
+                 : std::string());
   if (const auto& bulk = packing.bulk_density)
     page.add("<p>Bulk density: {:.6g} kg/m³ asked, {:.6g} reached.</p>\n", bulk->asked, bulk->reached);
   if (packing.cells) write_cells(page, *packing.cells, name_of(packing.scene.unit));
@@ -292,6 +294,7 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
   write_scene(page, report, scene);
   write_bed(page, report);
   write_sizes(page, report);
+  write_layers(page, report);
   write_contacts(page, report);
   write_chambers(page, report);
   write_walls(page, report);

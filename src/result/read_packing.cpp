@@ -103,9 +103,11 @@ std::filesystem::path spheres_of_result(const std::filesystem::path& folder) {
 
 Scene scene_of_result(const std::filesystem::path& folder) { return scene_in(folder); }
 
-Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder) {
+Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder,
+                                 std::vector<std::uint32_t>* classes) {
   SpheresFile read = spheres_in(scene, folder);
-  classes_in(scene, read);  // refuses those that the scene does not have
+  std::vector<std::uint32_t> known = classes_in(scene, read);  // refuses those that the scene does not have
+  if (classes) *classes = std::move(known);
   return std::move(read.spheres);
 }
 

@@ -14,6 +14,7 @@
 #include "report/report.hpp"
 #include "report/write_svg.hpp"
 #include "result/result_folder.hpp"
+#include "result/write_layers.hpp"
 #include "result/write_off.hpp"
 #include "result/write_output.hpp"
 #include "result/write_spheres.hpp"
@@ -92,6 +93,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   Certificate certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);
   go_on();
+  const SphereLayers layers = as_array ? SphereLayers() : layers_of(packing);
   const std::size_t n = packing.spheres.size();
   const SceneRadii radii = asked_radii_of(packing);
   const Measurements measured =
@@ -114,8 +116,13 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   if (!as_array) {
     OutputFile file(vtp);
     write_vtp(file, packing.spheres, name_of(packing.scene.unit), measured.of_contacts.coordination,
-              packing.classes);
+              packing.classes, columns_of_layers(layers, packing));
     file.close();
+    if (!layers.empty()) {
+      OutputFile table(staged.add(std::string(layers_as_text)));
+      write_layers_csv(table, layers, packing);
+      table.close();
+    }
   }
   Manifest manifest;
   const std::string scene =
@@ -140,8 +147,8 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   std::vector<std::string> sources;
   for (const std::filesystem::path& source : sources_of_scene(packing.scene.file))
     sources.push_back(std::filesystem::proximate(source, folder).string());
-  const Report report{packing,  certificate, measured,    radii.all.get(), hash_of(packing.spheres),
-                      manifest, sources,     options.cell};
+  const Report report{packing,  certificate, measured,     radii.all.get(),       hash_of(packing.spheres),
+                      manifest, sources,     options.cell, layer_amounts(packing)};
   staged.write("report.json", json_of(report));
   const std::string view =
       options.view && has_view(packing.spheres.dimension()) ? view_data(packing, &measured) : std::string();

@@ -49,6 +49,39 @@ Member of_start(M Start::*member) {
   return Member(member).inside(&Scene::start);
 }
 
+/// The file of a zone's surface; the digest is said only of such a zone.
+Member file_of_zone() {
+  Member member;
+  member.get = [](const void* of) -> std::optional<Value> {
+    const auto& mesh = static_cast<const Zone*>(of)->mesh;
+    return mesh ? std::optional<Value>(mesh->file.string()) : std::nullopt;
+  };
+  member.set = [](void* of, const Value& value) {
+    auto& mesh = static_cast<Zone*>(of)->mesh;
+    (mesh ? *mesh : mesh.emplace()).file = std::get<std::string>(value);
+  };
+  return member;
+}
+Member digest_of_zone() {
+  Member member;
+  member.get = [](const void* of) -> std::optional<Value> {
+    const auto& mesh = static_cast<const Zone*>(of)->mesh;
+    return mesh ? value_of(mesh->sha256) : std::nullopt;
+  };
+  member.set = [](void* of, const Value& value) {
+    auto& mesh = static_cast<Zone*>(of)->mesh;
+    take_value((mesh ? *mesh : mesh.emplace()).sha256, value);
+  };
+  return member;
+}
+
+void zone_rule(const Zone& zone, const Section& section) {
+  if (zone.mesh && zone.mesh->file.empty())
+    section.fail("mesh_sha256", "\"mesh_sha256\" is of a \"mesh\", and there is none: leave it out");
+  if (zone.mesh && zone.mesh->sha256.size() > 1)
+    section.refuse("mesh_sha256", "must be one, for the file of \"mesh\"");
+}
+
 void spheres_rule(const Scene& scene, const Section& section) {
   scale_rule(scene, section);
   amounts_rule(scene, section);
@@ -188,8 +221,15 @@ const Entry& zone_entry() {
                       "of the container's file, by name or by number from 1, or several of them"),
                 integer(&Zone::chamber, "chamber",
                         "of a mesh of several closed spaces, by number from 1, which is the largest",
-                        {1, 1e6})},
-       .choices = {{{"place"}, {"solid"}, {"chamber"}, {}}}});
+                        {1, 1e6}),
+                key(Type::file, file_of_zone(), "mesh",
+                    "a CAD file: a closed surface within the container, in the unit of the container's file "
+                    "or of the scene where its format carries none"),
+                names(digest_of_zone(), "mesh_sha256",
+                      "of the file of mesh, as sha256sum prints it: other bytes are refused; a result names "
+                      "it")},
+       .choices = {{{"place"}, {"solid"}, {"chamber"}, {"mesh"}, {}}},
+       .rule = rule(zone_rule)});
   return made;
 }
 

@@ -158,9 +158,9 @@ struct Packing {
   double packing_fraction() const;
 };
 
-/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`, or where
-/// the scene has zones by those of its classes; nothing where these are not said, and in other than three
-/// dimensions.
+/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`, else by
+/// those of their layers, or where the scene has zones by those of its classes; nothing where these are not
+/// said, and in other than three dimensions.
 std::optional<double> mass_of(const Packing&, double packing_fraction);
 
 }  // namespace bernal

@@ -200,6 +200,9 @@ struct Scene {
     const auto* constant = std::get_if<Constant>(&sizes);
     return cells || !constant || constant->value != 0;
   }
+  /// Surfaces that stand in files: those of the container and its obstacles, then those of the zones.
+  std::vector<MeshFile*> meshes();
+  std::vector<const MeshFile*> meshes() const;
   bool asks_for_gaps() const { return gap > 0 || wall_gap > 0; }
   bool is_periodic() const { return std::holds_alternative<PeriodicBox>(container); }
   int dimension() const {
@@ -220,6 +223,9 @@ struct Zone {
   std::vector<std::string> place = {};
   std::vector<std::string> solids = {};  ///< of the container's file, by name or by number from 1
   std::optional<int> chamber = {};       ///< of a mesh of several closed spaces: the first is the largest
+  /// A closed surface within the container, in the unit of its file; else in that of the container's file,
+  /// else in the scene's.
+  std::optional<MeshFile> mesh = {};
   /// The sizes, the amount, the material: what [spheres] may say, but for gaps, a start and beds.
   Scene spheres;
   Locations locations = {};
