@@ -137,6 +137,7 @@ Plan plan_of_cells(const Scene& stated) {
                         .cost = "O(N) a step",
                         .seconds = packing_again + (diagrams + rounds) * seconds_a_cell * n,
                         .bytes = bytes_a_cell * n});
+  std::erase(plan.absent, cells_effect);
   plan.expected_seconds += plan.items.back().seconds;
   plan.expected_memory_bytes += plan.items.back().bytes;
   plan.scene = std::move(scene);

@@ -186,7 +186,7 @@ class CellRun {
       stopped_ = true;
       return;
     }
-    effect.calls = static_cast<std::uint64_t>(found.steps);
+    effect.calls += static_cast<std::uint64_t>(found.steps);
     for (std::size_t i = 0; i < own.size(); ++i)
       if (std::abs(found.volumes[i] / wanted[i] - 1) < same_volume) found.volumes[i] = wanted[i];
     cells.distance_by_radii = distance_of(own, cells.scale);
