@@ -145,6 +145,8 @@ Command import_command() {
             {".toml"}),
        {"--shift", &call->shift, "Added to every centre first", "x,y,z"},
        within({"--frame", &call->frame, "Of a trajectory, from 1; the last if absent", "N"}, 1, 1 << 30),
+       {"--level", &options.level,
+        "Of a file with spheres inside of spheres, such as core-1-1; the outermost if absent", "NAME"},
        within({"--dimension", &call->dimension, "2: the spheres lie in a plane, and discs are meant", "2|3"},
               2, 3),
        {"--with-mesh", &call->with_mesh,
@@ -152,7 +154,8 @@ Command import_command() {
        {"--no-view", &call->no_view, "Leave the view to turn out of report.html, which is then smaller"},
        quiet_option(call->quiet, "Print nothing but errors")},
       {.text =
-           "The spheres lie in the container of --container, else in --box, else in the file's own box, "
+           "The spheres lie in the container of --container, else in --box, else in the file's own container "
+           "or box, "
            "else in the bounds of the spheres as walls; the printed lines say which. They come in the order "
            "of their numbers where they have some; indices count from 0.\n\nOverlaps are no reason to "
            "refuse: the result is certified, or not, and the ten worst overlaps and protrusions are "
