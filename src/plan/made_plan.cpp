@@ -8,6 +8,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "plan/cell_sizes.hpp"
 #include "plan/plan_insides.hpp"
 #include "plan/plan_zones.hpp"
 
@@ -53,6 +54,7 @@ Plan build_inside(const Scene& scene, const ScenesAround& around) {
   try {
     Plan plan = !scene.zones.empty() ? plan_of_zones(scene)
                 : scene.largest      ? plan_of_largest(scene)
+                : scene.cells        ? plan_of_cells(scene)
                                      : made_plan(scene);
     plan_insides(plan, around);
     plan.caution = in_dimension(dimension, plan.caution);

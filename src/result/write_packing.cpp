@@ -16,6 +16,7 @@
 #include "report/write_svg.hpp"
 #include "result/nest_folder.hpp"
 #include "result/result_folder.hpp"
+#include "result/write_layers.hpp"
 #include "result/write_off.hpp"
 #include "result/write_output.hpp"
 #include "result/write_spheres.hpp"
@@ -121,13 +122,15 @@ StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::fil
   const std::filesystem::path spheres = staged.add(spheres_file_of(packing, options));
   write_spheres(spheres, packing, as_array);
   if (as_array && !packing.classes.empty())
-    staged.write(std::string(classes_as_array), classes_as_npy(packing.classes));
+    staged.write(std::string(classes_as_array), as_npy(packing.classes));
+  if (!packing.weights.empty()) staged.write(std::string(weights_as_array), as_npy(packing.weights));
   const std::filesystem::path vtp = as_array ? std::filesystem::path() : staged.add("spheres.vtp");
   Certificate& certificate = made.certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);
   go_on();
   Manifest& manifest = made.manifest;
   stage_insides(packing, staged, folder, options, made);
+  const SphereLayers layers = as_array ? SphereLayers() : layers_of(packing);
   const std::size_t n = packing.spheres.size();
   const SceneRadii radii = asked_radii_of(packing);
   const Measurements measured =
@@ -150,8 +153,13 @@ StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::fil
   if (!as_array) {
     OutputFile file(vtp);
     write_vtp(file, packing.spheres, name_of(packing.scene.unit), measured.of_contacts.coordination,
-              packing.classes);
+              packing.classes, columns_of_layers(layers, packing));
     file.close();
+    if (!layers.empty()) {
+      OutputFile table(staged.add(std::string(layers_as_text)));
+      write_layers_csv(table, layers, packing);
+      table.close();
+    }
   }
   const std::string scene =
       scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);
@@ -175,8 +183,8 @@ StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::fil
   std::vector<std::string> sources;
   for (const std::filesystem::path& source : sources_of_scene(packing.scene.file))
     sources.push_back(std::filesystem::proximate(source, folder).string());
-  const Report report{packing,  certificate, measured,    radii.all.get(), hash_of(packing.spheres),
-                      manifest, sources,     options.cell};
+  const Report report{packing,  certificate, measured,     radii.all.get(),       hash_of(packing.spheres),
+                      manifest, sources,     options.cell, layer_amounts(packing)};
   staged.write("report.json", json_of(report));
   const std::string view =
       options.view && has_view(packing.spheres.dimension()) ? view_data(packing, &measured) : std::string();

@@ -24,6 +24,7 @@
 #include "run/checkpoint_owner.hpp"
 #include "run/conclude.hpp"
 #include "run/exact_place.hpp"
+#include "run/run_cells.hpp"
 #include "run/run_insides.hpp"
 #include "run/run_largest.hpp"
 #include "run/run_record.hpp"
@@ -369,6 +370,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
 Packing run_spheres(const Plan& plan, const RunOptions& options) {
   if (plan.scene.largest) return run_largest(plan, options);
   if (!plan.parts.empty()) return run_zones(plan, options);
+  if (plan.scene.cells) return run_cells(plan, options);
   Packing packing = begin_packing(plan, options.seed, options.threads);
   packing.domain = plan.domain;
   packing.container = plan.container;

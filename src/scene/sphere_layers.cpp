@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/random.hpp"
+#include "core/made.hpp"
 #include "core/parallel.hpp"
 #include "scene/layers_of_scene.hpp"
 #include "scene/toml_text.hpp"
@@ -128,6 +129,7 @@ SphereLayers layers_of(const Packing& packing) {
   SphereLayers made;
   made.of_class = layers_by_class(packing.scene);
   if (made.of_class.empty()) return made;
+  const Made counted("layers");
   const std::size_t n = packing.spheres.size();
   if (packing.classes.size() != n && made.of_class.size() > 1)
     throw Error(ErrorCode::bad_packing,
