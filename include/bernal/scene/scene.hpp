@@ -147,6 +147,9 @@ struct Output {
   std::optional<double> voxel = {};
   std::optional<int> resolution = {};
   VoxelValues values = VoxelValues::binary;
+  std::string material = {};  ///< of an image of fractions: what alone it is of; empty: all of the spheres
+  bool layers =
+      true;  ///< of files of solids and objects: each layer of spheres by itself, where there are any
   ContactTreatment contact = ContactTreatment::none;
   /// Between two spheres over the sum of their radii, to a wall over the radius: what a treatment leaves, or
   /// below what it acts.
