@@ -11,6 +11,28 @@ namespace bernal {
 
 bool shows_layers(const Exported& file) { return file.output.layers && has_layers(file.packing.scene); }
 
+BallsOfLayer balls_of_layer(const Exported& file, const std::string& name) {
+  const LayeredSpheres layers = layered(file);
+  const std::vector<std::vector<Layer>> of_class = layers_by_class(file.packing.scene);
+  BallsOfLayer made{.balls = Spheres<dynamic>(file.dimension())};
+  const auto add = [&](std::size_t i, double radius) {
+    for (std::size_t k = 0; k < made.balls.x.size(); ++k) made.balls.x[k].push_back(file.spheres.x[k][i]);
+    made.balls.r.push_back(radius);
+  };
+  std::vector<std::pair<std::size_t, double>> holes;
+  for (std::size_t i = 0; i < file.size(); ++i) {
+    const std::vector<Layer>& of = of_class[file.packing.classes.empty() ? 0 : file.packing.classes[i]];
+    const auto found = std::ranges::find(of, name, &Layer::name);
+    if (found == of.end()) continue;
+    const auto k = static_cast<std::size_t>(found - of.begin());
+    add(i, layers.of(i)[k]);
+    if (k > 0) holes.emplace_back(i, layers.of(i)[k - 1]);
+  }
+  made.outer = made.balls.size();
+  for (const auto& [i, radius] : holes) add(i, radius);
+  return made;
+}
+
 LayeredSpheres layered(const Exported& file) {
   const Packing& packing = file.packing;
   const SphereLayers layers = layers_of(packing);

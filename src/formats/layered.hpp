@@ -32,6 +32,13 @@ struct LayeredSpheres {
 /// leave them out.
 bool shows_layers(const Exported&);
 
+/// The balls of one layer, of that name: their outer ones, then those that are hollow within it.
+struct BallsOfLayer {
+  Spheres<dynamic> balls;
+  std::size_t outer = 0;
+};
+BallsOfLayer balls_of_layer(const Exported&, const std::string& name);
+
 /// Layers shrink as their spheres do where contacts are treated. Throws as `layers_of`.
 LayeredSpheres layered(const Exported&);
 

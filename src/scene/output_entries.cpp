@@ -61,6 +61,9 @@ const std::vector<schema::Key>& output_keys() {
            {"binary", "labels", "fraction", "materials", "layers"}),
       key(Type::text, &Output::material, "material",
           "of an image of values = \"fraction\": only the volume of what is made of this"),
+      key(Type::text, &Output::layer, "layer",
+          "what alone a file of triangles holds: a layer of the spheres by its name, closed by its outer and "
+          "its inner surface; if absent whole spheres"),
       unless("true", flag(&Output::layers, "layers",
                           "false: whole spheres, though the scene names layers; else each layer by itself")),
       word(&Output::contact, "contact",
