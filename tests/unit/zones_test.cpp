@@ -109,7 +109,7 @@ TEST(Zones, LayersWithoutAPlaceLieInTheirOrder) {
   EXPECT_TRUE(is_certified(packing));
 }
 
-std::filesystem::path written(const Folder& folder, const std::string& name, const Mesh& mesh) {
+std::filesystem::path written_mesh(const Folder& folder, const std::string& name, const Mesh& mesh) {
   std::string off = fmt::format("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
   for (const Vector<3>& v : mesh.vertices) off += fmt::format("{} {} {}\n", v[0], v[1], v[2]);
   for (const auto& t : mesh.triangles) off += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
@@ -121,7 +121,7 @@ TEST(Zones, ChambersAreCountedFromTheLargest) {
   Mesh mesh = mesh_of_box({Vector<3>::Zero(), Vector<3>(10, 10, 10)});
   append(mesh, mesh_of_box({Vector<3>(20, 0, 0), Vector<3>(28, 8, 8)}));
   append(mesh, mesh_of_box({Vector<3>(40, 0, 0), Vector<3>(46, 6, 6)}));
-  const auto file = written(folder, "chambers.off", mesh);
+  const auto file = written_mesh(folder, "chambers.off", mesh);
   const std::string container =
       fmt::format("container = {{ kind = \"mesh\", file = \"{}\" }}\n", file.string());
   const Packing packing = run(build(scene_of(container + "spheres = { diameter = 3 }\n"
@@ -147,7 +147,8 @@ TEST(Zones, ChambersAreCountedFromTheLargest) {
 
 TEST(Zones, ASurfaceInTheContainerHasItsOwnSpheresAndTheRestLiesAround) {
   const Folder folder;
-  const auto file = written(folder, "cube.off", mesh_of_box({Vector<3>(-2.5, -2.5, 6), Vector<3>(5, 5, 8)}));
+  const auto file =
+      written_mesh(folder, "cube.off", mesh_of_box({Vector<3>(-2.5, -2.5, 6), Vector<3>(2.5, 2.5, 14)}));
   const std::string zone =
       fmt::format("[[zone]]\nmesh = \"{}\"\ndiameter = 0.8\nmaterial = \"sand\"\n", file.string());
   const Packing packing =
@@ -178,21 +179,22 @@ TEST(Zones, ASurfaceInTheContainerHasItsOwnSpheresAndTheRestLiesAround) {
 
 TEST(Zones, ASurfaceLiesInTheContainerAndInNoOtherZone) {
   const Folder folder;
-  const auto zone = [&](const char* name, const Box& cube) {
+  const auto zone = [&](const char* name, const Bounds<3>& cube) {
     return fmt::format("[[zone]]\nmesh = \"{}\"\ndiameter = 0.5\n",
-                       written(folder, name, mesh_of_box(cube)).string());
+                       written_mesh(folder, name, mesh_of_box(cube)).string());
   };
-  const std::string inside = zone("a.off", {Vector<3>(-2, -2, 6), Vector<3>(4, 4, 8)});
+  const std::string inside = zone("a.off", {Vector<3>(-2, -2, 6), Vector<3>(2, 2, 14)});
   const auto says = [&](const std::string& zones, const std::string& what) {
     EXPECT_NE(refusal(std::string(cylinder) + zones).find(what), std::string::npos)
         << refusal(std::string(cylinder) + zones);
   };
-  says(inside + zone("b.off", {Vector<3>(-1, -1, 13), Vector<3>(2, 2, 4)}), "in another zone");
-  says(inside + zone("c.off", {Vector<3>(2.5, -1, 8), Vector<3>(4, 2, 4)}), "outside of the container");
-  says(inside + zone("d.off", {Vector<3>(20, 20, 8), Vector<3>(4, 2, 4)}), "lies outside of the container");
+  says(inside + zone("b.off", {Vector<3>(-1, -1, 13), Vector<3>(1, 1, 17)}), "in another zone");
+  says(inside + zone("c.off", {Vector<3>(2.5, -1, 8), Vector<3>(6.5, 1, 12)}), "outside of the container");
+  says(inside + zone("d.off", {Vector<3>(20, 20, 8), Vector<3>(24, 22, 12)}),
+       "lies outside of the container");
   says(inside + "[[zone]]\nplace = \"z > 16\"\ndiameter = 0.5\n", "all surfaces");
   EXPECT_NE(refusal("container = { kind = \"periodic\", size = [9, 9, 20] }\n" +
-                    zone("e.off", {Vector<3>(2, 2, 6), Vector<3>(4, 4, 8)}))
+                    zone("e.off", {Vector<3>(2, 2, 6), Vector<3>(6, 6, 14)}))
                 .find("without periods"),
             std::string::npos);
 }
