@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "bernal/formats/export.hpp"
+#include "bernal/formats/import.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/report/zones_in_place.hpp"
@@ -197,6 +199,33 @@ TEST(Zones, ASurfaceLiesInTheContainerAndInNoOtherZone) {
                     zone("e.off", {Vector<3>(2, 2, 6), Vector<3>(6, 6, 14)}))
                 .find("without periods"),
             std::string::npos);
+}
+
+TEST(Zones, PhasesOfMfixHaveTheirDensities) {
+  const Folder folder;
+  const Packing packing =
+      run(build(scene_of(std::string(cylinder) +
+                         "spheres = { diameter = 2, material_density = 2000 }\n[[zone]]\nplace = \"z < 8\"\n"
+                         "diameter = 1\nmaterial = \"sand\"\nmaterial_density = 2600\n")),
+          {});
+  write_export(packing, output_of("mfix"), folder / "particle_input.dat");
+  const std::string text = text_of(folder / "particle_input.dat");
+  for (const char* line : {"\nPhase_ID         T\n", "\nDensity          T\n",
+                           "Phase_ID   Diameter   Density\n", " 1 0.001 2600\n", " 2 0.002 2000\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  EXPECT_EQ(import_packing(folder / "particle_input.dat").packing.spheres.size(), packing.spheres.size());
+}
+
+TEST(Zones, HintsSayOfWhichZone) {
+  const Plan plan = build(scene_of(std::string(cylinder) +
+                                   "spheres = { diameter = 2, count = 3 }\n[[zone]]\nplace = \"z < 8\"\n"
+                                   "diameter = 1\ncount = 5\nmaterial = \"sand\"\n"));
+  const auto has = [&](const std::string& beginning) {
+    return std::ranges::any_of(plan.hints,
+                               [&](const std::string& hint) { return hint.starts_with(beginning); });
+  };
+  EXPECT_TRUE(has("sand: 5 spheres will float"));
+  EXPECT_TRUE(has("rest: 3 spheres will float"));
 }
 
 TEST(Zones, APeriodicBoxIsCutAtThePlaneAndWhereItBegins) {
