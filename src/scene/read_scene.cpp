@@ -144,7 +144,8 @@ class Reader : private TableReader {
     const toml::table& table = table_in(root, "spheres");
     sizes_are_diameters_ = table.contains("diameter");
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
-    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start") && !has_zones)
+    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("cells") &&
+        !table.contains("start") && !has_zones)
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
     scene.target.where = at(table.source());

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/cells_entry.hpp"
 #include "scene/layer_entry.hpp"
 #include "scene/scale_entry.hpp"
 #include "scene/spheres_rules.hpp"
@@ -88,8 +89,12 @@ void spheres_rule(const Scene& scene, const Section& section) {
     section.fail("heap_angle",
                  "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
   // The one that is read last is all that the scene still holds.
-  if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
-    section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
+  const auto& said = section.locations.keys;
+  for (const auto& [one, other] :
+       {std::pair("diameter", "radius"), {"cells", "radius"}, {"cells", "diameter"}})
+    if (said.contains(one) && said.contains(other))
+      section.fail(one, fmt::format("\"{}\" and \"{}\" in [spheres] exclude each other; give one of them",
+                                    other, one));
   start_rule(scene, section);
   layers_rule(scene.layers, "layers", "layers in [spheres]", section);
 }
@@ -153,6 +158,7 @@ const Entry& spheres_entry() {
                         "share, and takes what is left"),
                  size_key(false),
                  size_key(true),
+                 cells_key(),
                  scale_key(),
                  of_quantity(Quantity::length,
                              number(&Scene::gap, "gap",
@@ -190,7 +196,7 @@ const Entry& spheres_entry() {
                      {"mass", "packing_fraction"},
                      {}},
                     {{"bed"}, {"porosity"}, {"bulk_density"}, {}},
-                    {{"radius"}, {"diameter"}}},
+                    {{"radius"}, {"diameter"}, {"cells"}}},
         .rule = rule(spheres_rule)};
     of.keys[1].words = {"predicted"};
     return entry<Scene>(std::move(of));
@@ -231,9 +237,9 @@ const Entry& spheres_of_zone_entry() {
   static const Entry made = [] {
     Entry of = spheres_entry();
     of.name = "zone";
-    constexpr std::string_view of_all[] = {"gap",       "wall_gap", "start",        "start_unit",
-                                           "start_box", "bed",      "start_sha256", "bed_layers",
-                                           "height",    "top",      "scale",        "heap_angle"};
+    constexpr std::string_view of_all[] = {"gap",   "wall_gap",     "start",      "start_unit", "start_box",
+                                           "bed",   "start_sha256", "bed_layers", "height",     "top",
+                                           "scale", "heap_angle",   "cells"};
     std::erase_if(of.keys,
                   [&](const Key& key) { return std::ranges::find(of_all, key.name) != std::end(of_all); });
     for (Key& key : of.keys)
