@@ -8,6 +8,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "plan/cell_sizes.hpp"
 #include "plan/plan_zones.hpp"
 
 namespace bernal {
@@ -50,6 +51,7 @@ Plan build(const Scene& scene) {
   try {
     Plan plan = !scene.zones.empty() ? plan_of_zones(scene)
                 : scene.largest      ? plan_of_largest(scene)
+                : scene.cells        ? plan_of_cells(scene)
                                      : made_plan(scene);
     plan.caution = in_dimension(dimension, plan.caution);
     for (PlanItem& item : plan.items) item.what = in_dimension(dimension, item.what);

@@ -14,7 +14,19 @@ namespace bernal {
 BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
 BERNAL_KEYS(Packing::BulkDensity, asked, reached)
+BERNAL_KEYS(PackedCells::Quantile, share, wanted, by_radii, reached)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
+
+static void to_json(Json& json, const PackedCells& cells) {
+  json = {{"scale", cells.scale},
+          {"quantiles", cells.quantiles},
+          {"kolmogorov_by_radii", cells.distance_by_radii},
+          {"kolmogorov", cells.distance},
+          {"largest_deviation", cells.error},
+          {"mean_sphericity", cells.mean_sphericity},
+          {"rounds", cells.rounds},
+          {"newton_steps", cells.steps}};
+}
 
 /// An effect that is only counted is timed within another.
 static void to_json(Json& json, const Effect& effect) {
@@ -48,9 +60,10 @@ static void to_json(Json& json, const Certificate& c) {
   json["seconds"] = c.seconds;
 }
 
-std::string certificate_as_json(const Certificate& c, const std::optional<Rest>& rest,
-                                const Spheres<dynamic>& spheres) {
+std::string certificate_as_json(const Certificate& c, const std::optional<ZonesInPlace>& zones,
+                                const std::optional<Rest>& rest, const Spheres<dynamic>& spheres) {
   Json json = c;
+  if (zones) json["misplaced"] = zones->misplaced;
   if (rest) {
     json["settled"] = {{"at_rest", rest->unsettled == 0},
                        {"unsettled", rest->unsettled},

@@ -62,7 +62,7 @@ struct NamedFile {
 };
 std::vector<NamedFile> files_and_digests(Scene& scene) {
   std::vector<std::string> digests;
-  for (const MeshFile* mesh : scene.container.meshes()) {
+  for (const MeshFile* mesh : scene.meshes()) {
     const std::size_t files = digests.size() + 1 + mesh->obstacles.size();
     digests.insert(digests.end(), mesh->sha256.begin(), mesh->sha256.end());
     digests.resize(files);

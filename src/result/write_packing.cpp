@@ -87,7 +87,8 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   const std::filesystem::path spheres = staged.add(spheres_file_of(packing, options));
   write_spheres(spheres, packing, as_array);
   if (as_array && !packing.classes.empty())
-    staged.write(std::string(classes_as_array), classes_as_npy(packing.classes));
+    staged.write(std::string(classes_as_array), as_npy(packing.classes));
+  if (!packing.weights.empty()) staged.write(std::string(weights_as_array), as_npy(packing.weights));
   const std::filesystem::path vtp = as_array ? std::filesystem::path() : staged.add("spheres.vtp");
   Certificate certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);

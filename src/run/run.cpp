@@ -24,6 +24,7 @@
 #include "run/checkpoint_owner.hpp"
 #include "run/conclude.hpp"
 #include "run/exact_place.hpp"
+#include "run/run_cells.hpp"
 #include "run/run_largest.hpp"
 #include "run/run_record.hpp"
 #include "run/run_stages.hpp"
@@ -363,6 +364,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
                 plan.scene.engine->locations.of("slabs"));
   if (plan.scene.largest) return run_largest(plan, options);
   if (!plan.parts.empty()) return run_zones(plan, options);
+  if (plan.scene.cells) return run_cells(plan, options);
   Packing packing = begin_packing(plan, options.seed, options.threads);
   packing.domain = plan.domain;
   packing.container = plan.container;

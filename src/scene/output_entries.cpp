@@ -122,10 +122,16 @@ std::string file_beside(const std::filesystem::path& file, std::string_view endi
   return file.stem().string() + std::string(ending);
 }
 
+bool is_folder(const OutputTable& table, const std::filesystem::path& name) {
+  return table.is_folder && !(std::filesystem::path(table.file).has_extension() && name.has_extension());
+}
+
 std::vector<std::string> files_of(const Output& output) {
   std::vector<std::string> names = {output.file.filename().string()};
-  for (const std::string_view ending : table_of(output).endings)
-    names.push_back(file_beside(output.file, ending));
+  const OutputTable& table = table_of(output);
+  const bool is_alone = !table.alone.empty() && output.file.extension() == table.alone;
+  if (is_alone || is_folder(table, output.file)) return names;
+  for (const std::string_view ending : table.endings) names.push_back(file_beside(output.file, ending));
   return names;
 }
 

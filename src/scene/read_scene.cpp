@@ -77,8 +77,12 @@ class Reader : private TableReader {
   void read_container(const toml::table& root, Scene& scene) const {
     const toml::table& table = table_in(root, "container");
     read_solid(table, known_words_in(schema::container_entries()), "[container]", scene.container);
-    if (!scene.container.meshes().empty() && !root.contains("unit"))
-      fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
+    if (!scene.container.meshes().empty()) require_unit(root, table);
+  }
+  void require_unit(const toml::table& root, const toml::table& of_mesh) const {
+    if (!root.contains("unit"))
+      fail(of_mesh.source(),
+           "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
   }
 
   /// A container or an obstacle; `kinds` may stand there.
@@ -140,7 +144,8 @@ class Reader : private TableReader {
     const toml::table& table = table_in(root, "spheres");
     sizes_are_diameters_ = table.contains("diameter");
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
-    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start") && !has_zones)
+    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("cells") &&
+        !table.contains("start") && !has_zones)
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
     scene.target.where = at(table.source());
@@ -157,6 +162,10 @@ class Reader : private TableReader {
       sizes_are_diameters_ = table->contains("diameter");
       read(*table, schema::zone_entry(), names_of(schema::spheres_of_zone_entry().keys), where, &zone,
            zone.locations);
+      if (zone.mesh) {
+        zone.mesh->file = beside(zone.locations.of("mesh"), zone.mesh->file);
+        require_unit(root, *table);
+      }
       spheres.file = path_;
       read(*table, schema::spheres_of_zone_entry(), names_of(schema::zone_entry().keys), where, &spheres,
            spheres.locations);

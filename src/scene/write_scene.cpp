@@ -89,7 +89,7 @@ std::vector<std::string> assignments(const schema::Entry& entry, const void* opt
         key->type == schema::Type::distribution ? text_of(std::get<std::vector<SceneSizes>>(value).front())
         : key->type == schema::Type::points     ? text_of(std::get<Polygon>(value).loops.front())
         : key->type == schema::Type::tables     ? text_of(tables->front())
-        : tables && key->type == schema::Type::length
+        : tables && (key->type == schema::Type::length || key->type == schema::Type::table)
             ? text_of(*tables->front().of, tables->front().items.front().get())
             : toml_text(value);
     out.push_back(fmt::format("{} = {}", key->name, text));

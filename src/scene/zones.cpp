@@ -149,11 +149,12 @@ static void require_zones(const Scene& scene) {
       fail(zone, "solid",
            "where a zone is a \"solid\" each solid is a zone: leave \"diameter\" and \"radius\" out of "
            "[spheres], and give the others a [[zone]]");
-    const bool has_place = !zone.place.empty() || !zone.solids.empty() || zone.chamber;
+    const bool has_walls = !zone.solids.empty() || zone.chamber || zone.mesh;
+    const bool has_place = !zone.place.empty() || has_walls;
     if (!has_place && !laid)
       fail(zone, "",
-           fmt::format("{} needs exactly one of \"place\", \"solid\", \"chamber\"; only spheres that settle, "
-                       "with bed = \"poured\" in [spheres], lie on others without",
+           fmt::format("{} needs exactly one of \"place\", \"solid\", \"chamber\", \"mesh\"; only spheres "
+                       "that settle, with bed = \"poured\" in [spheres], lie on others without",
                        section_name_of_zone(k + 1)));
     if (laid && (target.fill || target.packing_fraction))
       fail(zone, target.fill ? "fill" : "packing_fraction",
@@ -165,11 +166,12 @@ static void require_zones(const Scene& scene) {
                        section_name_of_zone(k + 1)));
     if (laid && !zone.place.empty() && has_amount)
       fail(zone, "place", "a layer of a bed ends by its \"place\" or by its amount; leave one of them out");
-    if (!zone.place.empty() && !laid && scene.gap > 2 * scene.wall_gap)
-      fail(zone, "place",
-           fmt::format("spheres on both sides of a plane would be nearer than \"gap\": give a \"wall_gap\" "
-                       "of {:g}, half of it, in [spheres]",
-                       scene.gap / 2));
+    if ((zone.mesh || (!zone.place.empty() && !laid)) && scene.gap > 2 * scene.wall_gap)
+      fail(
+          zone, zone.mesh ? "mesh" : "place",
+          fmt::format("spheres on both sides of its border would be nearer than \"gap\": give a \"wall_gap\" "
+                      "of {:g}, half of it, in [spheres]",
+                      scene.gap / 2));
   }
 }
 
