@@ -292,6 +292,7 @@ void complete_output(Output& output, const Scene& scene) {
   constexpr int resolution_of_images = 256;
   if (output.file.empty()) output.file = table.file;
   require_plain_name(output, table, section);
+  require_layers_of_output(output, scene);
   if (table.keys.find("resolution") && !output.voxel && !output.resolution)
     output.resolution = resolution_of_images;
   if (!output.unit || !table.keys.find("unit")) output.unit = table.unit.value_or(scene.unit);
