@@ -170,6 +170,11 @@ void bind_packing(py::module_& module) {
   py::class_<Packing, PackingPointer>(module, "Packing")
       .def("columns", &columns_of)
       .def("classes", &classes_of_packing)
+      .def("weights",
+           [](const Packing& packing) {
+             return py::array_t<double>(static_cast<py::ssize_t>(packing.weights.size()),
+                                        packing.weights.data());
+           })
       .def("layers", &layers_of_packing)
       .def("history", &history_of)
       .def("effects", &effects_of)

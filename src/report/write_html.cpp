@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/report/describe.hpp"
 #include "report/chart.hpp"
 #include "report/describe.hpp"
 #include "report/page.hpp"
@@ -98,6 +99,18 @@ void write_headline(Page& page, const Report& report) {
            escaped(report.certificate.statement));
 }
 
+/// What was asked of the cells, beside what there is.
+void write_cells(Page& page, const PackedCells& cells, std::string_view unit) {
+  page.add(
+      "<p>{}.</p>\n<table><tr><th>Share of the cells</th><th>wanted, {}³</th><th>by the radii</th>"
+      "<th>reached</th></tr>\n",
+      escaped(cells_in_words(cells)), escaped(unit));
+  for (const auto& [share, wanted, by_radii, reached] : cells.quantiles)
+    page.add("<tr><td>{:g} %</td><td>{:.4g}</td><td>{:.4g}</td><td>{:.4g}</td></tr>\n", 100 * share, wanted,
+             by_radii, reached);
+  page.raw("</table>\n");
+}
+
 /// The sum by which an amount became a number of spheres, and what is there.
 void write_amount(Page& page, const Packing& packing) {
   const std::vector<double>& radii = packing.spheres.r;
@@ -114,6 +127,7 @@ void write_amount(Page& page, const Packing& packing) {
                  : std::string());
   if (const auto& bulk = packing.bulk_density)
     page.add("<p>Bulk density: {:.6g} kg/m³ asked, {:.6g} reached.</p>\n", bulk->asked, bulk->reached);
+  if (packing.cells) write_cells(page, *packing.cells, name_of(packing.scene.unit));
 }
 
 /// What explain said before the run.

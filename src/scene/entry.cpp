@@ -80,7 +80,7 @@ std::vector<Key> joined(std::vector<Key> keys, std::vector<Key> others) {
 }
 
 std::string name_of_table(const Key& key, std::size_t list, std::size_t item, const std::string& where) {
-  if (key.type == Type::length) return fmt::format("{} of {}", key.name, where);
+  if (key.type == Type::length || key.type == Type::table) return fmt::format("{} of {}", key.name, where);
   if (key.type == Type::tables) return fmt::format("{} {} of {}", key.table().name, item + 1, where);
   return fmt::format("{} {} of {} {} of {}", key.table().name, item + 1, key.list_of, list + 1, where);
 }

@@ -57,7 +57,8 @@ enum class Type {
   distribution,  ///< a length, or a table of one of the distributions
   parts,         ///< array of distributions
   solids,        ///< array of files of closed surfaces and of tables of containers, or one file
-  tables,        ///< array of tables of Key::table
+  table,         ///< a table of Key::table
+  tables,        ///< array of tables of Key::table, or one
   table_lists,   ///< array of arrays of such, of which some may be empty
 };
 
@@ -298,6 +299,21 @@ std::vector<Item> items_of(const Tables& tables) {
   for (const std::shared_ptr<void>& item : tables.items)
     items.push_back(*static_cast<const Item*>(item.get()));
   return items;
+}
+/// A key of one table.
+template <class T, class Item>
+Key table(std::optional<Item> T::*member, const Entry& (*entry)(), Text name, Text help) {
+  Member way;
+  way.get = [member, entry](const void* of) -> std::optional<Value> {
+    const std::optional<Item>& item = static_cast<const T*>(of)->*member;
+    return item ? std::optional<Value>(std::vector{tables_of(std::vector{*item}, entry())}) : std::nullopt;
+  };
+  way.set = [member](void* of, const Value& value) {
+    static_cast<T*>(of)->*member = items_of<Item>(std::get<std::vector<Tables>>(value).front()).front();
+  };
+  Key made = key(Type::table, std::move(way), name, help);
+  made.table = entry;
+  return made;
 }
 /// A key of tables; and of a list of them for each `list_of`.
 template <class T, class Item>

@@ -108,7 +108,7 @@ static void archive(Archive& a, Scene& scene) {
 static void archive(Archive& a, Packing& p) {
   a(p.spheres, p.classes, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.hints,
     p.expected_of_sizes, p.bulk_density, p.size_scale, p.scene, p.seed, p.threads, p.program, p.outcome,
-    p.reason, p.effects, p.history, p.seconds, p.resumed);
+    p.reason, p.effects, p.history, p.seconds, p.resumed, p.weights, p.cells);
 }
 
 /// Which bernal wrote the bytes, and whether this one may read them, stands in front; of those before 0.2 it

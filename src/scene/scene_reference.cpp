@@ -1,5 +1,6 @@
 #include "bernal/scene/scene_reference.hpp"
 
+#include "scene/cells_entry.hpp"
 #include "scene/layer_entry.hpp"
 #include "scene/output_table.hpp"
 #include "scene/scene_entries.hpp"
@@ -13,9 +14,10 @@ using schema::Entry;
 
 /// In the order of schema::Type.
 constexpr std::string_view type_words[] = {
-    "flag",    "integer", "number",       "length",  "word",   "file",   "direction",   "push",    "position",
-    "text",    "names",   "corner",       "extents", "points", "lines",  "coordinates", "lengths", "shares",
-    "amounts", "axes",    "distribution", "parts",   "solids", "tables", "table_lists"};
+    "flag",  "integer",     "number",  "length", "word",       "file",    "direction",
+    "push",  "position",    "text",    "names",  "corner",     "extents", "points",
+    "lines", "coordinates", "lengths", "shares", "amounts",    "axes",    "distribution",
+    "parts", "solids",      "table",   "tables", "table_lists"};
 static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::table_lists) + 1);
 /// In the order of schema::Acts.
 constexpr std::string_view acts_words[] = {"everywhere", "in_bed", "in_box"};
@@ -74,7 +76,8 @@ std::vector<ReferenceGroup> scene_reference() {
   zone.keys.insert(zone.keys.end(), spheres.keys.begin(), spheres.keys.end());
   zone.choices.insert(zone.choices.end(), spheres.choices.begin(), spheres.choices.end());
   groups[6].tables.push_back(std::move(zone));
-  for (const Entry* entry : {&schema::layer_entry(), &schema::thickness_entry()})
+  for (const Entry* entry :
+       {&schema::layer_entry(), &schema::thickness_entry(), &schema::cells_entry(), &schema::inside_entry()})
     groups[7].tables.push_back(described(*entry));
   return groups;
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/cells_entry.hpp"
 #include "scene/layer_entry.hpp"
 #include "scene/scale_entry.hpp"
 #include "scene/spheres_rules.hpp"
@@ -88,8 +89,12 @@ void spheres_rule(const Scene& scene, const Section& section) {
     section.fail("heap_angle",
                  "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
   // The one that is read last is all that the scene still holds.
-  if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
-    section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
+  const auto& said = section.locations.keys;
+  for (const auto& [one, other] :
+       {std::pair("diameter", "radius"), {"cells", "radius"}, {"cells", "diameter"}})
+    if (said.contains(one) && said.contains(other))
+      section.fail(one, fmt::format("\"{}\" and \"{}\" in [spheres] exclude each other; give one of them",
+                                    other, one));
   start_rule(scene, section);
   layers_rule(scene.layers, "layers", "layers in [spheres]", section);
 }
@@ -153,6 +158,7 @@ const Entry& spheres_entry() {
                         "share, and takes what is left"),
                  size_key(false),
                  size_key(true),
+                 cells_key(),
                  scale_key(),
                  of_quantity(Quantity::length,
                              number(&Scene::gap, "gap",
@@ -179,7 +185,9 @@ const Entry& spheres_entry() {
                      "the folder's box, else the size of the container"),
                  names(of_start(&Start::sha256), "start_sha256",
                        "of the start's file, as sha256sum prints it: other bytes are refused; a result "
-                       "names it")},
+                       "names it"),
+                 tables(&Scene::inside, inside_entry, "inside",
+                        "packings in the innermost layer of the spheres of a class")},
         .choices = {{{"count"},
                      {"packing_fraction"},
                      {"fill"},
@@ -190,11 +198,29 @@ const Entry& spheres_entry() {
                      {"mass", "packing_fraction"},
                      {}},
                     {{"bed"}, {"porosity"}, {"bulk_density"}, {}},
-                    {{"radius"}, {"diameter"}}},
+                    {{"radius"}, {"diameter"}, {"cells"}}},
         .rule = rule(spheres_rule)};
     of.keys[1].words = {"predicted"};
     return entry<Scene>(std::move(of));
   }();
+  return made;
+}
+
+const Entry& inside_entry() {
+  static const Entry made = entry<Inside>(
+      {.name = "inside",
+       .help = "a packing in the innermost layer of every sphere of a class",
+       .keys = {required(key(Type::file, &Inside::scene, "scene",
+                             "of what lies inside: its container is the ball that the layer is, and may be "
+                             "left out there")),
+                key(Type::text, &Inside::of_class, "class",
+                    "whose spheres are filled; may be absent where there is only one"),
+                key(Type::text, &Inside::layer, "layer",
+                    "the innermost of these spheres; may be absent where they have no layers"),
+                integer(&Inside::templates, "templates",
+                        "so many packings, each in many spheres, turned at random; if absent every sphere "
+                        "has its own",
+                        {1, 1e6})}});
   return made;
 }
 
@@ -231,9 +257,9 @@ const Entry& spheres_of_zone_entry() {
   static const Entry made = [] {
     Entry of = spheres_entry();
     of.name = "zone";
-    constexpr std::string_view of_all[] = {"gap",       "wall_gap", "start",        "start_unit",
-                                           "start_box", "bed",      "start_sha256", "bed_layers",
-                                           "height",    "top",      "scale",        "heap_angle"};
+    constexpr std::string_view of_all[] = {"gap",   "wall_gap",     "start",      "start_unit", "start_box",
+                                           "bed",   "start_sha256", "bed_layers", "height",     "top",
+                                           "scale", "heap_angle",   "cells",      "inside"};
     std::erase_if(of.keys,
                   [&](const Key& key) { return std::ranges::find(of_all, key.name) != std::end(of_all); });
     for (Key& key : of.keys)

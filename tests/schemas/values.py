@@ -21,6 +21,7 @@ GOOD = {
     "parts": ["[1, 2]", '[{ distribution = "mixture", of = [1, { distribution = "uniform", min = 1, '
               'max = 2 }], shares = [1, 2] }, 3]'],
     "solids": ['"part.stl"', '["part.stl", "other.stl"]', '[{ kind = "sphere", radius = 1 }, "part.stl"]'],
+    "table": ["{ volume = 2 }", '{ diameter = { distribution = "uniform", min = 1, max = 2 }, rounds = 0 }'],
     "tables": ['[{ name = "core" }]', '[{ name = "core" }, { name = "shell", share = 0.25, material_density = "2 g/cm3" }]'],
     "table_lists": ['[[{ name = "core" }, { name = "shell", share = 0.25 }], []]'],
 }
@@ -38,6 +39,8 @@ BAD = {
                      '{ distribution = "uniform", min = 1 }', '{ distribution = "constant", value = 1, sigma = 1 }'],
     "parts": ["[]", "1", "[0]", '[1, { distribution = "nonsense" }]'],
     "solids": ["[]", "1", '""', "[1]", '[{ kind = "periodic", edge = 1 }]', '[{ kind = "sphere" }]'],
+    "table": ["[]", "1", '""', "{}", "[{ volume = 2 }]", "{ volume = 0 }", "{ volume = 1, diameter = 1 }",
+              "{ volume = 1, rounds = -1 }", "{ volume = 1, name = 1 }"],
     "tables": ["[]", "1", '""', "[1]", "{}", "[{}]", '[{ name = "a", share = 1 }]', '[{ name = "a", sd = 1 }]',
                '[{ name = "a", thickness = { mean = 1 } }]', '[{ name = "a", share = 0.5, thickness = 1 }]'],
     "table_lists": ["[]", "1", "[1, 2]", '[{ name = "core" }, { name = "shell" }]', '[[{ share = 0.5 }], []]'],
@@ -141,6 +144,9 @@ class Table:
             return sphere + spheres + "[engine]\n" + "\n".join(body) + "\n"
         if self.name == "scene":
             return "\n".join(body) + "\n" + sphere + spheres
+        if self.name == "spheres" and "cells" in lines:  # which are of boxes, and as many as are counted
+            body = [line for line in body if not line.startswith(("fill", "count"))]
+            return '[container]\nkind = "periodic"\n[spheres]\ncount = 3\n' + "\n".join(body) + "\n"
         if self.name == "spheres":
             return sphere + "[spheres]\n" + "\n".join(body) + "\n"
         return sphere + spheres + f"[{self.name}]\n" + "\n".join(body) + "\n"

@@ -147,6 +147,10 @@ struct Output {
   std::optional<double> voxel = {};
   std::optional<int> resolution = {};
   VoxelValues values = VoxelValues::binary;
+  std::string material = {};  ///< of an image of fractions: what alone it is of; empty: all of the spheres
+  /// Of a file of triangles: what alone it holds, a layer of the spheres by its name; empty: whole spheres.
+  std::string layer = {};
+  bool layers = true;  ///< of files of solids and objects: a scene's layers of spheres, each by itself
   ContactTreatment contact = ContactTreatment::none;
   /// Between two spheres over the sum of their radii, to a wall over the radius: what a treatment leaves, or
   /// below what it acts.
@@ -170,6 +174,8 @@ struct Scene {
   SceneContainer container;  ///< the unit cube, if nothing else is said
   SceneSizes sizes;          ///< left at a Constant of 0 where those of the start are all there are
   bool sizes_are_diameters = false;
+  /// In place of `sizes`, which is then left at its Constant of 0: see `weights_for_volumes`.
+  std::optional<CellSizes> cells = {};
   double scale = 1;      ///< the spheres are so many times as large as `sizes` says
   bool largest = false;  ///< as many times as `Target::count` of them fit: `run` finds out
   /// Without it quantiles where a stage keeps the sizes in a container, and wherever few spheres carry much
@@ -196,7 +202,7 @@ struct Scene {
   /// Whether there are sizes to draw from, besides those of zones.
   bool draws() const {
     const auto* constant = std::get_if<Constant>(&sizes);
-    return !constant || constant->value != 0;
+    return cells || !constant || constant->value != 0;
   }
   /// Surfaces that stand in files: those of the container and its obstacles, then those of the zones.
   std::vector<MeshFile*> meshes();

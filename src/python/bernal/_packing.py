@@ -159,6 +159,15 @@ class Packing:
         return [material for _, material, _ in self._classes[1]]
 
     @cached_property
+    def weights(self) -> Array:
+        """Of each Laguerre cell, where the scene asks for volumes of cells, as `cells = {"volume": …}` does: squared
+        lengths, of which only differences matter. A point belongs to the cell in which the squared distance from the
+        centre less the weight is least. Empty elsewhere: then the weights are the squared radii."""
+        weights: Array = self._core.weights()
+        weights.setflags(write=False)
+        return weights
+
+    @cached_property
     def layers(self) -> list[dict[str, Any]]:
         """What layers the spheres have, class by class and from the centre out; empty where the scene names none.
 
