@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bernal/core/text.hpp"
 #include "files/file_kind.hpp"
 #include "files/seal.hpp"
 #include "formats/level_marks.hpp"
@@ -103,7 +102,7 @@ class SerpentInput {
 
   void add_level(const Level& level) {
     const std::string universe = universe_of(level);
-    add("\n% level {}: {} spheres\n", level.name, grouped(level.size()));
+    add("\n% the spheres of {}\n", level.name);
     if (!level.turns.empty())
       add("% turned ones: coordinates that enter a universe are multiplied by its matrix\n");
     add("cell around_{0} around_{0} {1} -everywhere\n", universe, material(level.background));

@@ -110,8 +110,10 @@ class Cell:
 
 
 class Cells:
-    def __init__(self, cells):
-        self.cells = cells
+    """`ends` where points that no cell has are outside of everything, as in a root universe."""
+
+    def __init__(self, cells, ends=False):
+        self.cells, self.ends = cells, ends
 
     def split(self, p):
         """Pairs (what a cell holds, which points it has); counts the points that not exactly one cell has."""
@@ -122,7 +124,9 @@ class Cells:
             claims[has] += 1
             if len(has):
                 parts.append((cell.holds, has))
-        return parts, int(np.count_nonzero(claims != 1))
+        if self.ends:
+            parts.append((OUTSIDE, np.nonzero(claims == 0)[0]))
+        return parts, int(np.count_nonzero(claims > 1 if self.ends else claims != 1))
 
 
 class Lattice:

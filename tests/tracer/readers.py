@@ -83,7 +83,8 @@ def read_openmc(file):
         element.clear()
     for universe, listed in cells.items():
         assert universe not in universes, f"{universe} is a universe and a lattice"
-        universes[universe] = Cells([Cell([(surfaces[s], sense) for s, sense in sides], h) for sides, h in listed])
+        universes[universe] = Cells([Cell([(surfaces[s], sense) for s, sense in sides], h) for sides, h in listed],
+                                    ends=universe == 0)
     return Geometry(universes, 0)
 
 
