@@ -242,13 +242,13 @@ std::string comment_of(const Exported& file) {
 
 /// Names and densities; what they are made of, a packing does not know.
 std::string materials_text(const LevelModel& model) {
-  std::string text = "<materials>\n  <!-- give each its nuclides, and a density where none is known -->\n";
+  std::string text =
+      "<materials>\n  <!-- give each its nuclides; where no density is known it is the sum of theirs -->\n";
   for (std::size_t k = 0; k < model.materials.size(); ++k) {
     const LevelMaterial& material = model.materials[k];
-    text += fmt::format("  <material id=\"{}\" name=\"{}\"", k + 1, material.name);
-    text += material.density ? fmt::format(">\n    <density value=\"{}\" units=\"g/cm3\"/>\n  </material>\n",
-                                           *material.density)
-                             : "/>\n";
+    text += fmt::format(
+        "  <material id=\"{}\" name=\"{}\">\n    <density {}/>\n  </material>\n", k + 1, material.name,
+        material.density ? fmt::format("value=\"{}\" units=\"g/cm3\"", *material.density) : "units=\"sum\"");
   }
   return text + "</materials>\n";
 }

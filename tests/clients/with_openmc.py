@@ -3,6 +3,8 @@
 
 Debian has no OpenMC; https://docs.openmc.org says how to install it. Takes a minute.
 """
+import warnings
+
 from client import *
 
 openmc = need_module("openmc", "see https://docs.openmc.org")
@@ -13,6 +15,7 @@ from readers import read_openmc  # noqa: E402
 
 LAYERS = """layers = [{ name = "kernel", share = 0.3 }, { name = "buffer" }, { name = "shell", thickness = 0.05 }]
 """
+warnings.simplefilter("ignore", openmc.IDWarning)  # two geometries in one process
 POINTS = 3000
 
 

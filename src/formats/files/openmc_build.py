@@ -16,7 +16,7 @@ here = Path(__file__).resolve().parent
 def compose(material):
     """Gives a material what it is made of."""
     material.add_element("C", 1.0)
-    if material.density is None:
+    if material.density_units == "sum":  # none is known
         material.set_density("g/cm3", 1.0)
 
 
