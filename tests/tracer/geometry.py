@@ -277,3 +277,68 @@ def volumes(geometry, lower, upper, count, runs=8, seed=1, root=None, leaves=(),
             shares.setdefault(name, np.zeros(runs))[run] = hits / len(points)
     geometry.unclear = unclear
     return {name: (whole * s.mean(), whole * s.std(ddof=1) / runs**0.5) for name, s in shares.items()}
+
+
+def behind(geometry, universe):
+    """The universe itself, or where it is a turned one alone that which it turns."""
+    made = geometry.universes[universe]
+    while isinstance(made, Cells) and len(made.cells) == 1 and isinstance(made.cells[0].holds, Placed):
+        if any(not isinstance(surface, Everywhere) for surface, _ in made.cells[0].sides):
+            break
+        universe = made.cells[0].holds.universe
+        made = geometry.universes[universe]
+    return universe
+
+
+def universes_in_balls(geometry):
+    """Of every universe that a ball about its origin holds, the radius of that ball."""
+    radii = {}
+
+    def note(universe, radius):
+        universe = behind(geometry, universe)
+        radii[universe] = max(radii.get(universe, 0), radius)
+
+    for made in geometry.universes.values():
+        if isinstance(made, Balls):
+            for universe, radius in set(zip(made.universes, made.radii)):
+                note(universe, radius)
+        elif isinstance(made, Cells):
+            for cell in made.cells:
+                if isinstance(cell.holds, Placed) and len(cell.sides) == 1:
+                    surface, sense = cell.sides[0]
+                    if isinstance(surface, Ball) and sense < 0:
+                        note(cell.holds.universe, surface.radius)
+    return radii
+
+
+def volumes_by_levels(geometry, lower, upper, count, runs=8):
+    """The same as `volumes`, level by level: what a universe within a ball holds is found once, from so many points, and
+    counts for all places of it. Points of one level say more of small things than those of all space."""
+    balls = universes_in_balls(geometry)
+    known, unclear = {}, 0
+
+    def shares(universe):
+        nonlocal unclear
+        if universe not in known:
+            r = balls[universe]
+            within = volumes(geometry, [-r] * 3, [r] * 3, count, runs, root=universe, leaves=balls, ball=r)
+            unclear += geometry.unclear
+            known[universe] = collected({name: (v / (4 / 3 * np.pi * r**3), e / (4 / 3 * np.pi * r**3))
+                                         for name, (v, e) in within.items()})
+        return known[universe]
+
+    def collected(found):
+        """With universes replaced by what they hold; errors of independent samples add up by squares."""
+        total = {}
+        for name, (volume, error) in found.items():
+            parts = shares(name) if name in balls else {name: (1.0, 0.0)}
+            for material, (share, its) in parts.items():
+                v, square = total.get(material, (0.0, 0.0))
+                total[material] = v + volume * share, square + (error * share) ** 2 + (volume * its) ** 2
+        return {name: (v, square**0.5) for name, (v, square) in total.items()}
+
+    outermost = volumes(geometry, lower, upper, count, runs, leaves=balls)
+    unclear += geometry.unclear
+    made = collected(outermost)
+    geometry.unclear = unclear
+    return made

@@ -244,7 +244,7 @@ def mcnp_surface(kind, c):
 
 def read_mcnp(file):
     lines = Path(file).read_text().splitlines()
-    assert all(len(line) <= 80 for line in lines[1:])
+    assert all(len(line) <= 80 for line in lines[1:] if not line.startswith("c "))
     blocks, names = [[]], {}
     for line in lines[1:]:
         if not line.strip():
