@@ -9,6 +9,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "scene/cells_entry.hpp"
 #include "scene/complete_sizes.hpp"
+#include "scene/insides.hpp"
 #include "scene/known_words.hpp"
 #include "scene/layers_of_scene.hpp"
 #include "scene/output_table.hpp"
@@ -357,6 +358,7 @@ void complete(Scene& scene) {
   require_layers(scene);
   complete_stages(scene);
   complete_zones(scene);
+  check_insides(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});
