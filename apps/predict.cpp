@@ -175,11 +175,12 @@ nlohmann::ordered_json as_json(const PredictCall& call, const PredictAnswer& ans
     json["relative_viscosity"] = *answer.viscosity;
   }
   for (const auto& [of_class, name, material, share] : answer.layers)
-    json["layers"].push_back({{"class", of_class.empty() ? nlohmann::ordered_json() : of_class},
-                              {"name", name},
-                              {"material", material},
-                              {"share", share},
-                              {"packing_fraction", share * answer.prediction.phi}});
+    json["layers"].push_back(
+        {{"class", of_class.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(of_class)},
+         {"name", name},
+         {"material", material},
+         {"share", share},
+         {"packing_fraction", share * answer.prediction.phi}});
   for (const LayerShare& of : by_material(answer.layers))
     json["materials"].push_back({{"material", of.material},
                                  {"share", of.share},
