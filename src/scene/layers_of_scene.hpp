@@ -23,4 +23,7 @@ void require_layers(const Scene&);
 /// as they may be. Drawn thicknesses end at their `max`, or six standard deviations above the mean.
 void require_layers_fit(const Scene&, double smallest, double largest);
 
+/// Throws Error{bad_scene} where an output asks for layers or materials that a scene does not have.
+void require_layers_of_output(const Output&, const Scene&);
+
 }  // namespace bernal

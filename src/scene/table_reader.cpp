@@ -173,7 +173,7 @@ std::vector<Tables> TableReader::read_tables(const toml::node& node, const Key& 
                                              const std::string& where) const {
   const Entry& entry = key.table();
   std::vector<Tables> lists;
-  if (key.type == Type::length || key.type == Type::table) {
+  if (key.type == Type::length || key.type == Type::table || (key.type == Type::tables && node.is_table())) {
     if (!node.is_table()) refuse(node, key, where);
     read_table(node, entry, schema::name_of_table(key, 0, 0, where), lists.emplace_back(Tables{&entry}));
     return lists;

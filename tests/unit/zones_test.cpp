@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "bernal/formats/export.hpp"
+#include "bernal/formats/import.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/report/zones_in_place.hpp"
@@ -109,7 +111,7 @@ TEST(Zones, LayersWithoutAPlaceLieInTheirOrder) {
   EXPECT_TRUE(is_certified(packing));
 }
 
-std::filesystem::path written(const Folder& folder, const std::string& name, const Mesh& mesh) {
+std::filesystem::path written_mesh(const Folder& folder, const std::string& name, const Mesh& mesh) {
   std::string off = fmt::format("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
   for (const Vector<3>& v : mesh.vertices) off += fmt::format("{} {} {}\n", v[0], v[1], v[2]);
   for (const auto& t : mesh.triangles) off += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
@@ -121,7 +123,7 @@ TEST(Zones, ChambersAreCountedFromTheLargest) {
   Mesh mesh = mesh_of_box({Vector<3>::Zero(), Vector<3>(10, 10, 10)});
   append(mesh, mesh_of_box({Vector<3>(20, 0, 0), Vector<3>(28, 8, 8)}));
   append(mesh, mesh_of_box({Vector<3>(40, 0, 0), Vector<3>(46, 6, 6)}));
-  const auto file = written(folder, "chambers.off", mesh);
+  const auto file = written_mesh(folder, "chambers.off", mesh);
   const std::string container =
       fmt::format("container = {{ kind = \"mesh\", file = \"{}\" }}\n", file.string());
   const Packing packing = run(build(scene_of(container + "spheres = { diameter = 3 }\n"
@@ -147,7 +149,8 @@ TEST(Zones, ChambersAreCountedFromTheLargest) {
 
 TEST(Zones, ASurfaceInTheContainerHasItsOwnSpheresAndTheRestLiesAround) {
   const Folder folder;
-  const auto file = written(folder, "cube.off", mesh_of_box({Vector<3>(-2.5, -2.5, 6), Vector<3>(5, 5, 8)}));
+  const auto file =
+      written_mesh(folder, "cube.off", mesh_of_box({Vector<3>(-2.5, -2.5, 6), Vector<3>(2.5, 2.5, 14)}));
   const std::string zone =
       fmt::format("[[zone]]\nmesh = \"{}\"\ndiameter = 0.8\nmaterial = \"sand\"\n", file.string());
   const Packing packing =
@@ -178,23 +181,51 @@ TEST(Zones, ASurfaceInTheContainerHasItsOwnSpheresAndTheRestLiesAround) {
 
 TEST(Zones, ASurfaceLiesInTheContainerAndInNoOtherZone) {
   const Folder folder;
-  const auto zone = [&](const char* name, const Box& cube) {
+  const auto zone = [&](const char* name, const Bounds<3>& cube) {
     return fmt::format("[[zone]]\nmesh = \"{}\"\ndiameter = 0.5\n",
-                       written(folder, name, mesh_of_box(cube)).string());
+                       written_mesh(folder, name, mesh_of_box(cube)).string());
   };
-  const std::string inside = zone("a.off", {Vector<3>(-2, -2, 6), Vector<3>(4, 4, 8)});
+  const std::string inside = zone("a.off", {Vector<3>(-2, -2, 6), Vector<3>(2, 2, 14)});
   const auto says = [&](const std::string& zones, const std::string& what) {
     EXPECT_NE(refusal(std::string(cylinder) + zones).find(what), std::string::npos)
         << refusal(std::string(cylinder) + zones);
   };
-  says(inside + zone("b.off", {Vector<3>(-1, -1, 13), Vector<3>(2, 2, 4)}), "in another zone");
-  says(inside + zone("c.off", {Vector<3>(2.5, -1, 8), Vector<3>(4, 2, 4)}), "outside of the container");
-  says(inside + zone("d.off", {Vector<3>(20, 20, 8), Vector<3>(4, 2, 4)}), "lies outside of the container");
+  says(inside + zone("b.off", {Vector<3>(-1, -1, 13), Vector<3>(1, 1, 17)}), "in another zone");
+  says(inside + zone("c.off", {Vector<3>(2.5, -1, 8), Vector<3>(6.5, 1, 12)}), "outside of the container");
+  says(inside + zone("d.off", {Vector<3>(20, 20, 8), Vector<3>(24, 22, 12)}),
+       "lies outside of the container");
   says(inside + "[[zone]]\nplace = \"z > 16\"\ndiameter = 0.5\n", "all surfaces");
   EXPECT_NE(refusal("container = { kind = \"periodic\", size = [9, 9, 20] }\n" +
-                    zone("e.off", {Vector<3>(2, 2, 6), Vector<3>(4, 4, 8)}))
+                    zone("e.off", {Vector<3>(2, 2, 6), Vector<3>(6, 6, 14)}))
                 .find("without periods"),
             std::string::npos);
+}
+
+TEST(Zones, PhasesOfMfixHaveTheirDensities) {
+  const Folder folder;
+  const Packing packing =
+      run(build(scene_of(std::string(cylinder) +
+                         "spheres = { diameter = 2, material_density = 2000 }\n[[zone]]\nplace = \"z < 8\"\n"
+                         "diameter = 1\nmaterial = \"sand\"\nmaterial_density = 2600\n")),
+          {});
+  write_export(packing, output_of("mfix"), folder / "particle_input.dat");
+  const std::string text = text_of(folder / "particle_input.dat");
+  for (const char* line : {"\nPhase_ID         T\n", "\nDensity          T\n",
+                           "Phase_ID   Diameter   Density\n", " 1 0.001 2600\n", " 2 0.002 2000\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  EXPECT_EQ(import_packing(folder / "particle_input.dat").packing.spheres.size(), packing.spheres.size());
+}
+
+TEST(Zones, HintsSayOfWhichZone) {
+  const Plan plan = build(scene_of(std::string(cylinder) +
+                                   "spheres = { diameter = 2, count = 3 }\n[[zone]]\nplace = \"z < 8\"\n"
+                                   "diameter = 1\ncount = 5\nmaterial = \"sand\"\n"));
+  const auto has = [&](const std::string& beginning) {
+    return std::ranges::any_of(plan.hints,
+                               [&](const std::string& hint) { return hint.starts_with(beginning); });
+  };
+  EXPECT_TRUE(has("sand: 5 spheres will float"));
+  EXPECT_TRUE(has("rest: 3 spheres will float"));
 }
 
 TEST(Zones, APeriodicBoxIsCutAtThePlaneAndWhereItBegins) {
