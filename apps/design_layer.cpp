@@ -31,7 +31,7 @@ struct LayerCall {
 struct LayerAnswer {
   double share = 0;   ///< of the layers or the material of that name, of the spheres
   double needed = 0;  ///< packing fraction of the spheres
-  Prediction prediction;
+  Prediction prediction = {};
 };
 
 /// Layers of that name, or all of that material.
