@@ -18,6 +18,7 @@
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/json.hpp"
 #include "bernal/report/zones_in_place.hpp"
+#include "bernal/result/certify_levels.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -96,6 +97,10 @@ void print(const Certificate& c, const std::optional<ZonesInPlace>& zones, const
   }
   say(stdout, "\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
       grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
+  for (const Certificate::Level& level : c.levels)
+    say(stdout, "inside     {}: {} pairs near, {} overlapping, {} walls near, {} protruding, {} misplaced\n",
+        level.name, grouped(level.pairs_tested), grouped(level.overlapping_pairs),
+        grouped(level.walls_tested), grouped(level.protruding_spheres), grouped(level.misplaced));
   if (zones)
     say(stdout, "zones      {} spheres not in the place of theirs\n", grouped(zones->misplaced.size()));
   const std::size_t most = zones ? std::min(zones->misplaced.size(), listed(call.list)) : 0;
@@ -146,8 +151,11 @@ int verify(const VerifyCall& call) {
   const Scene scene = scene_of(call);
   say_if_unpublished(call.target);
   const bool streamed = is_streamed(call, scene);
-  std::vector<std::uint32_t> classes;
-  const Spheres<dynamic> spheres = streamed ? Spheres<dynamic>()
+  const bool by_levels = is_folder(call.target) && !scene.inside.empty();
+  const Packing nest = by_levels ? read_packing(call.target) : Packing();
+  std::vector<std::uint32_t> classes = nest.classes;
+  const Spheres<dynamic> spheres = streamed    ? Spheres<dynamic>()
+                                   : by_levels ? nest.spheres
                                    : is_folder(call.target)  // before another result replaces both
                                        ? read_spheres_of(scene, call.target, &classes)
                                        : read_columns_of(scene, call.target);
@@ -161,8 +169,9 @@ int verify(const VerifyCall& call) {
                                .list = listed(call.list),
                                .threads = call.threads,
                                .monitor = bar.monitor()};
-  Certificate certificate = streamed ? certify_in_slabs(scene, spheres_of_result(call.target), options)
-                                     : certify(spheres, domain, options);
+  Certificate certificate = streamed    ? certify_in_slabs(scene, spheres_of_result(call.target), options)
+                            : by_levels ? certify_levels(nest, options)
+                                        : certify(spheres, domain, options);
   certificate.statement += certified_walls(scene);
   const auto zones = zones_in_place(scene, domain, spheres, classes, {.threads = call.threads});
   if (zones) add_to(certificate, *zones);

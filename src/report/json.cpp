@@ -13,6 +13,8 @@ namespace bernal {
 
 BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
+BERNAL_KEYS(Certificate::Level, name, packings, packed, filled, spheres, pairs_tested, walls_tested,
+            decided_double, decided_exact, overlapping_pairs, protruding_spheres, misplaced)
 BERNAL_KEYS(Packing::BulkDensity, asked, reached)
 BERNAL_KEYS(PackedCells::Quantile, share, wanted, by_radii, reached)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
@@ -57,6 +59,10 @@ static void to_json(Json& json, const Certificate& c) {
           {"least_wall_distance", c.least_wall_distance}};
   if (!c.overlaps.empty()) json["overlaps"] = c.overlaps;
   if (!c.protrusions.empty()) json["protrusions"] = c.protrusions;
+  if (!c.levels.empty()) {
+    json["levels"] = c.levels;
+    json["spheres_of_all_levels"] = c.spheres_of_all_levels;
+  }
   json["seconds"] = c.seconds;
 }
 
@@ -140,6 +146,7 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
                {"mass", mass ? Json(*mass) : Json()},
                {"classes", classes_json(packing)},
                {"bulk_density", packing.bulk_density},
+               {"cells", packing.cells},
                {"expected_phi", packing.expected_packing_fraction},
                {"expected_phi_of_sizes", packing.expected_of_sizes},
                {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},

@@ -117,7 +117,7 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
     return refers_to(key.name == "volume" ? "radius" : key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
   if (key.type == "table") return refers_to(key.table);
-  if (key.type == "tables") return array_of(refers_to(key.table), 1);
+  if (key.type == "tables") return either(refers_to(key.table), array_of(refers_to(key.table), 1));
   if (key.type == "table_lists") return array_of(array_of(refers_to(key.table), 0), 1);
   if (!key.table.empty()) return either(refers_to(key.type), refers_to(key.table));
   const bool from_zero = key.type == "lengths" && key.min == 0;

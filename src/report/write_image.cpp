@@ -24,6 +24,10 @@ VoxelType type_of(VoxelValues values) {
       return {"uint8", "UInt8", "phase", "|u1"};
     case VoxelValues::labels:
       return {"uint32", "UInt32", "FeatureIds", "<u4"};
+    case VoxelValues::materials:
+      return {"uint8", "UInt8", "material", "|u1"};
+    case VoxelValues::layers:
+      return {"uint8", "UInt8", "layer", "|u1"};
     case VoxelValues::fraction:
       break;
   }
@@ -49,16 +53,23 @@ Vector<3> first_center(const VoxelGrid& grid) {
 
 }  // namespace
 
-std::string meaning_of(VoxelValues values) {
-  switch (values) {
+std::string meaning_of(const VoxelImage& image) {
+  switch (image.values) {
     case VoxelValues::binary:
       return "0 pore, 1 sphere, 2 outside the container";
     case VoxelValues::labels:
       return "0 pore, i + 1 sphere i (counted from 0), 4294967295 outside the container";
+    case VoxelValues::materials:
+    case VoxelValues::layers: {
+      std::string text = "0 pore";
+      for (std::size_t k = 0; k < image.names.size(); ++k)
+        text += fmt::format(", {} {}", k + 1, image.names[k]);
+      return text + ", 255 outside the container";
+    }
     case VoxelValues::fraction:
       break;
   }
-  return "volume fraction of spheres, 0 to 1";
+  return fmt::format("volume fraction of {}, 0 to 1", image.names.empty() ? "spheres" : image.names.front());
 }
 
 void write_nrrd(OutputFile& file, const VoxelImage& image, const Monitor& monitor) {
@@ -79,7 +90,7 @@ void write_nrrd(OutputFile& file, const VoxelImage& image, const Monitor& monito
   if (bytes_per_voxel(image.values) > 1) header += "endian: little\n";
   header += fmt::format("encoding: raw\nspace origin: ({})\nspace units: {}\nvalues:={}\n\n",
                         joined(first_center(grid), dimension, ","), joined(units, dimension, " "),
-                        meaning_of(image.values));
+                        meaning_of(image));
   file.append(header);
   write_raw(file, image, monitor);
 }
@@ -104,7 +115,7 @@ void write_vti(OutputFile& file, const VoxelImage& image, const Monitor& monitor
   </ImageData>
   <AppendedData encoding="raw">
 _)",
-                          image.unit, meaning_of(image.values), extent, joined(corner, 3, " "),
+                          image.unit, meaning_of(image), extent, joined(corner, 3, " "),
                           joined(grid.spacing, 3, " "), type.array, type.vtk));
   const std::uint64_t bytes = bytes_of(image);
   char length[sizeof bytes];
@@ -121,7 +132,7 @@ void write_raw(OutputFile& file, const VoxelImage& image, const Monitor& monitor
       [&](std::string_view layers) {
         for (std::size_t k = 0; k < layers.size(); k += piece) file.append(layers.substr(k, piece));
       },
-      monitor);
+      monitor, image.layers);
 }
 
 std::string raw_header(const VoxelImage& image) {
@@ -143,7 +154,7 @@ std::string raw_header(const VoxelImage& image) {
   "written": ")",
       type_of(image.values).numpy, joined(shape, dimension, ", "), joined(grid.count, dimension, ", "),
       joined(grid.spacing, dimension, ", "), joined(grid.corner, dimension, ", "),
-      joined(first_center(grid), dimension, ", "), image.unit, meaning_of(image.values));
+      joined(first_center(grid), dimension, ", "), image.unit, meaning_of(image));
   return sealed(std::move(header), "", "\"\n}\n");
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "bernal/voxels/voxels.hpp"
 #include "files/output_file.hpp"
@@ -14,10 +15,12 @@ struct VoxelImage {
   VoxelValues values = VoxelValues::binary;
   std::string unit;   ///< of lengths: "mm"
   std::string title;  ///< one line
+  VoxelLayers layers = {};
+  std::vector<std::string> names = {};  ///< what the values of layers stand for, from 1, or their fraction
 };
 
 /// Explanation of the values: "0 pore, 1 sphere, 2 outside the container".
-std::string meaning_of(VoxelValues);
+std::string meaning_of(const VoxelImage&);
 
 // All of these write an array of voxels, x fastest, then y, then z, little-endian, while it is made; see
 // `voxelise` for exceptions and cost. Nothing is certain before the file is closed.
@@ -27,7 +30,8 @@ std::string meaning_of(VoxelValues);
 void write_nrrd(OutputFile&, const VoxelImage&, const Monitor& = {});
 
 /// VTK's ImageData, one value a cell, raw appended data with 64-bit lengths: ParaView, PyVista. The array is
-/// named "phase", "FeatureIds" or "solid_fraction". The origin is the corner of the first voxel.
+/// named "phase", "FeatureIds", "solid_fraction", "material" or "layer". The origin is the corner of the
+/// first voxel.
 void write_vti(OutputFile&, const VoxelImage&, const Monitor& = {});
 
 /// TIFF 6.0, uncompressed, one page a layer of 8 or 32 bits, with the lowest y in the first row; ImageJ's

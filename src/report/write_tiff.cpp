@@ -87,13 +87,14 @@ constexpr std::uint64_t multiple_of_16(std::uint64_t value) { return (value + 15
 std::string description_of(const VoxelImage& image) {
   const double white = image.values == VoxelValues::binary     ? 2
                        : image.values == VoxelValues::fraction ? 1
-                                                               : static_cast<double>(image.spheres.size());
+                       : image.values == VoxelValues::labels   ? static_cast<double>(image.spheres.size())
+                                                               : static_cast<double>(image.names.size());
   const std::string scale = has_scale_in_tiff(image.grid)
                                 ? fmt::format("unit={}\nspacing={}\n", image.unit, image.grid.spacing[2])
                                 : fmt::format("voxels of {} x {} x {} {}\n", image.grid.spacing[0],
                                               image.grid.spacing[1], image.grid.spacing[2], image.unit);
   return fmt::format("ImageJ=1.53t\nimages={0}\nslices={0}\n{1}min=0\nmax={2}\n{3}; {4}\n",
-                     image.grid.count[2], scale, white, plain_text(image.title), meaning_of(image.values));
+                     image.grid.count[2], scale, white, plain_text(image.title), meaning_of(image));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "bernal/scene/sphere_classes.hpp"
 #include "files/npy_file.hpp"
 #include "files/put_in_place.hpp"
+#include "result/nest_folder.hpp"
 #include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/spheres_file.hpp"
@@ -143,6 +144,7 @@ Packing read_packing(const std::filesystem::path& folder) {
   packing.domain = packed_domain_of(packing.scene);
   packing.volume = volume_of(packing.domain);
   packing.seed = packing.scene.seed;
+  read_nest(packing, folder);
   if (const auto& start = packing.scene.start.file;
       start && std::filesystem::equivalent(where_it_stands(*start), spheres_of_result(folder), unknown))
     packing.outcome = Outcome::imported;  // only such a result begins from itself

@@ -25,6 +25,7 @@
 #include "run/conclude.hpp"
 #include "run/exact_place.hpp"
 #include "run/run_cells.hpp"
+#include "run/run_insides.hpp"
 #include "run/run_largest.hpp"
 #include "run/run_record.hpp"
 #include "run/run_stages.hpp"
@@ -362,6 +363,11 @@ Packing run(const Plan& plan, const RunOptions& options) {
                 "spheres in \"slabs\" are packed into files, by bernal pack, and nobody holds them; leave "
                 "\"slabs\" out to have them all",
                 plan.scene.engine->locations.of("slabs"));
+  if (!plan.insides.empty()) return run_with_insides(plan, options);
+  return run_spheres(plan, options);
+}
+
+Packing run_spheres(const Plan& plan, const RunOptions& options) {
   if (plan.scene.largest) return run_largest(plan, options);
   if (!plan.parts.empty()) return run_zones(plan, options);
   if (plan.scene.cells) return run_cells(plan, options);

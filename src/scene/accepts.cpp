@@ -139,7 +139,7 @@ const std::map<Type, Rule> rules = {
     {Type::parts, {"an array of lengths and tables { distribution = … }", are_sizes, false}},
     {Type::solids, {"an array of files and of tables { kind = … }", is_file, false}},
     {Type::table, {"a table", are_tables, false}},
-    {Type::tables, {"an array of tables", are_tables, false}},
+    {Type::tables, {"an array of tables, or one table", are_tables, false}},
     {Type::table_lists, {"an array of arrays of tables", are_tables, false}},
 };
 

@@ -9,6 +9,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "scene/cells_entry.hpp"
 #include "scene/complete_sizes.hpp"
+#include "scene/insides.hpp"
 #include "scene/known_words.hpp"
 #include "scene/layers_of_scene.hpp"
 #include "scene/output_table.hpp"
@@ -291,6 +292,7 @@ void complete_output(Output& output, const Scene& scene) {
   constexpr int resolution_of_images = 256;
   if (output.file.empty()) output.file = table.file;
   require_plain_name(output, table, section);
+  require_layers_of_output(output, scene);
   if (table.keys.find("resolution") && !output.voxel && !output.resolution)
     output.resolution = resolution_of_images;
   if (!output.unit || !table.keys.find("unit")) output.unit = table.unit.value_or(scene.unit);
@@ -356,6 +358,7 @@ void complete(Scene& scene) {
   require_layers(scene);
   complete_stages(scene);
   complete_zones(scene);
+  check_insides(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});

@@ -58,7 +58,7 @@ enum class Type {
   parts,         ///< array of distributions
   solids,        ///< array of files of closed surfaces and of tables of containers, or one file
   table,         ///< a table of Key::table
-  tables,        ///< array of tables of Key::table
+  tables,        ///< array of tables of Key::table, or one
   table_lists,   ///< array of arrays of such, of which some may be empty
 };
 

@@ -69,8 +69,7 @@ LayerAmounts layer_amounts(const Packing& packing) {
   }
   for (std::size_t k = 0; k < bare.size(); ++k)
     if (bare[k] > 0)
-      add(made.materials, classes[k].material.empty() ? classes[k].name : classes[k].material, bare[k],
-          mass(classes[k].material_density, bare[k]));
+      add(made.materials, material_of(classes[k]), bare[k], mass(classes[k].material_density, bare[k]));
   for (MaterialAmount& material : made.materials)
     material.packing_fraction = packing.volume > 0 ? material.volume / packing.volume : 0;
   return made;

@@ -9,6 +9,7 @@
 #include <toml++/toml.h>
 
 #include "bernal/core/text.hpp"
+#include "scene/insides.hpp"
 #include "scene/output_table.hpp"
 #include "scene/read_value.hpp"
 #include "scene/scene_entries.hpp"
@@ -27,7 +28,8 @@ using schema::Entry;
 /// Reads a scene's file, table by table.
 class Reader : private TableReader {
  public:
-  using TableReader::TableReader;
+  explicit Reader(const std::filesystem::path& file, const std::optional<BallOfSphere>& ball = {})
+      : TableReader(file), ball_(ball) {}
 
   Scene read_all(const toml::table& root) {
     Scene scene;
@@ -75,9 +77,14 @@ class Reader : private TableReader {
   }
 
   void read_container(const toml::table& root, Scene& scene) const {
+    if (ball_ && !root.contains("container")) {
+      put_into_ball(scene, *ball_);
+      return;
+    }
     const toml::table& table = table_in(root, "container");
     read_solid(table, known_words_in(schema::container_entries()), "[container]", scene.container);
     if (!scene.container.meshes().empty()) require_unit(root, table);
+    if (ball_) put_into_ball(scene, *ball_);
   }
   void require_unit(const toml::table& root, const toml::table& of_mesh) const {
     if (!root.contains("unit"))
@@ -148,6 +155,7 @@ class Reader : private TableReader {
         !table.contains("start") && !has_zones)
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
+    for (Inside& inside : scene.inside) inside.scene = beside(inside.locations.of("scene"), inside.scene);
     scene.target.where = at(table.source());
     for (const char* key : {"bed", "top", "height", "bed_layers", "porosity", "bulk_density", "count", "mass",
                             "packing_fraction", "fill"})
@@ -207,9 +215,23 @@ class Reader : private TableReader {
 
   static constexpr std::array<std::string_view, 7> tables = {"container", "spheres", "zone",  "accuracy",
                                                              "engine",    "stage",   "output"};
+
+  std::optional<BallOfSphere> ball_;  ///< that takes the place of the container
 };
 
+std::string read_text_of_scene(const std::filesystem::path& file) {
+  constexpr std::streamsize largest = 1 << 20;
+  return read_toml_text(file, "scene", largest, "no scene is; is it the mesh?");
+}
+
 }  // namespace
+
+Scene read_scene_inside(const std::filesystem::path& file, const BallOfSphere& ball) {
+  const std::string text = read_text_of_scene(file);
+  if (is_blank(text))
+    throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [spheres]", {file.string()});
+  return Reader(file, ball).read_all(parse_toml(text, file));
+}
 
 Scene scene_of_table(const toml::table& root, const std::filesystem::path& file) {
   return Reader(file).read_all(root);
@@ -222,9 +244,6 @@ Scene parse_scene(std::string_view toml, const std::filesystem::path& name) {
   return scene_of_table(parse_toml(toml, name), name);
 }
 
-Scene read_scene(const std::filesystem::path& file) {
-  constexpr std::streamsize largest = 1 << 20;
-  return parse_scene(read_toml_text(file, "scene", largest, "no scene is; is it the mesh?"), file);
-}
+Scene read_scene(const std::filesystem::path& file) { return parse_scene(read_text_of_scene(file), file); }
 
 }  // namespace bernal

@@ -76,7 +76,8 @@ std::vector<ReferenceGroup> scene_reference() {
   zone.keys.insert(zone.keys.end(), spheres.keys.begin(), spheres.keys.end());
   zone.choices.insert(zone.choices.end(), spheres.choices.begin(), spheres.choices.end());
   groups[6].tables.push_back(std::move(zone));
-  for (const Entry* entry : {&schema::layer_entry(), &schema::thickness_entry(), &schema::cells_entry()})
+  for (const Entry* entry :
+       {&schema::layer_entry(), &schema::thickness_entry(), &schema::cells_entry(), &schema::inside_entry()})
     groups[7].tables.push_back(described(*entry));
   return groups;
 }

@@ -185,7 +185,9 @@ const Entry& spheres_entry() {
                      "the folder's box, else the size of the container"),
                  names(of_start(&Start::sha256), "start_sha256",
                        "of the start's file, as sha256sum prints it: other bytes are refused; a result "
-                       "names it")},
+                       "names it"),
+                 tables(&Scene::inside, inside_entry, "inside",
+                        "packings in the innermost layer of the spheres of a class")},
         .choices = {{{"count"},
                      {"packing_fraction"},
                      {"fill"},
@@ -201,6 +203,24 @@ const Entry& spheres_entry() {
     of.keys[1].words = {"predicted"};
     return entry<Scene>(std::move(of));
   }();
+  return made;
+}
+
+const Entry& inside_entry() {
+  static const Entry made = entry<Inside>(
+      {.name = "inside",
+       .help = "a packing in the innermost layer of every sphere of a class",
+       .keys = {required(key(Type::file, &Inside::scene, "scene",
+                             "of what lies inside: its container is the ball that the layer is, and may be "
+                             "left out there")),
+                key(Type::text, &Inside::of_class, "class",
+                    "whose spheres are filled; may be absent where there is only one"),
+                key(Type::text, &Inside::layer, "layer",
+                    "the innermost of these spheres; may be absent where they have no layers"),
+                integer(&Inside::templates, "templates",
+                        "so many packings, each in many spheres, turned at random; if absent every sphere "
+                        "has its own",
+                        {1, 1e6})}});
   return made;
 }
 
@@ -239,7 +259,7 @@ const Entry& spheres_of_zone_entry() {
     of.name = "zone";
     constexpr std::string_view of_all[] = {"gap",   "wall_gap",     "start",      "start_unit", "start_box",
                                            "bed",   "start_sha256", "bed_layers", "height",     "top",
-                                           "scale", "heap_angle",   "cells"};
+                                           "scale", "heap_angle",   "cells",      "inside"};
     std::erase_if(of.keys,
                   [&](const Key& key) { return std::ranges::find(of_all, key.name) != std::end(of_all); });
     for (Key& key : of.keys)

@@ -164,7 +164,12 @@ void TableReader::read_table(const toml::node& node, const Entry& entry, const s
   std::shared_ptr<void> made = entry.make();
   Locations unkept;
   Locations* kept = entry.locations ? entry.locations(made.get()) : &unkept;
-  read(*node.as_table(), entry, {}, where, made.get(), *kept);
+  const toml::table& table = *node.as_table();
+  read(table, entry, {}, where, made.get(), *kept);
+  for (const Key& key : entry.keys)  // else `check` finds it
+    if (!entry.locations && key.required && !table.contains(key.name))
+      fail(node.source(), "missing \"{}\" in {}: {}, {}", key.name, where, schema::expectation(key),
+           key.help);
   into.items.push_back(std::move(made));
 }
 
@@ -173,7 +178,7 @@ std::vector<Tables> TableReader::read_tables(const toml::node& node, const Key& 
                                              const std::string& where) const {
   const Entry& entry = key.table();
   std::vector<Tables> lists;
-  if (key.type == Type::length || key.type == Type::table) {
+  if (key.type == Type::length || key.type == Type::table || (key.type == Type::tables && node.is_table())) {
     if (!node.is_table()) refuse(node, key, where);
     read_table(node, entry, schema::name_of_table(key, 0, 0, where), lists.emplace_back(Tables{&entry}));
     return lists;

@@ -164,6 +164,8 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
   if (!folder.empty())
     for (std::filesystem::path* const file : files_named_in(named))
       if (!is_given(scene, *file)) *file = std::filesystem::proximate(*file, folder);
+  if (!folder.empty())
+    for (Inside& inside : named.inside) inside.scene = std::filesystem::proximate(inside.scene, folder);
   std::string out = fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
                                 container_as_toml(named.container), lines(schema::spheres_entry(), &named),
                                 lines(schema::accuracy_entry(), &scene));

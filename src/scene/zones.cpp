@@ -129,6 +129,7 @@ Scene scene_of_rest(const Scene& whole) {
   Scene of = whole;
   of.zones.clear();
   of.outputs.clear();
+  of.inside.clear();
   return of;
 }
 

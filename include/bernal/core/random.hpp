@@ -56,6 +56,7 @@ enum class Stream : std::uint64_t {
   grow = 9,
   fly = 10,
   layers = 11,
+  inside = 12,
   test = 255
 };
 constexpr std::uint64_t stream(Stream purpose, std::uint64_t index = 0) {

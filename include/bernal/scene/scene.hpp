@@ -147,6 +147,10 @@ struct Output {
   std::optional<double> voxel = {};
   std::optional<int> resolution = {};
   VoxelValues values = VoxelValues::binary;
+  std::string material = {};  ///< of an image of fractions: what alone it is of; empty: all of the spheres
+  /// Of a file of triangles: what alone it holds, a layer of the spheres by its name; empty: whole spheres.
+  std::string layer = {};
+  bool layers = true;  ///< of files of solids and objects: a scene's layers of spheres, each by itself
   ContactTreatment contact = ContactTreatment::none;
   /// Between two spheres over the sum of their radii, to a wall over the radius: what a treatment leaves, or
   /// below what it acts.

@@ -35,6 +35,10 @@ std::vector<std::vector<Layer>> layers_by_class(const Scene&);
 /// Whether a scene names layers, of whichever spheres.
 bool has_layers(const Scene&);
 
+/// What spheres and their layers are made of, each once, class by class and from the centre out; "spheres"
+/// where the scene tells no spheres apart.
+std::vector<std::string> materials_of(const Scene&);
+
 /// What a layer is made of, by name.
 inline const std::string& material_of(const Layer& layer) {
   return layer.material.empty() ? layer.name : layer.material;
