@@ -127,6 +127,8 @@ class Scenes(unittest.TestCase):
     def test_what_is_missing_is_missed_by_both(self):
         cases = []
         for table in TABLES:
+            if table.group == "zone":  # a zone without a place is a layer, where the scene says that spheres settle
+                continue
             needed = table.needed()
             cases += [table.scene({k: v for k, v in needed.items() if k != name}) for name in needed]
         self.assertGreater(len(cases), 20)

@@ -8,6 +8,7 @@ FITTING = {
     "density": "[0, 1]", "sizes": "[1, 2]", "passing": "[0, 100]",
     "retained": "[100, 0]", "edges": "[1, 2, 3]", "counts": "[1, 1]", "masses": "[1, 1]", "of": "[1, 2]", "dimension": "3",
     "inner_radius": "0.5", "vertices": "[[0, 0], [9, 0], [0, 9]]", "contact": '"gap"',
+    "place": '"z < 5"',
 }
 GOOD = {
     "flag": ["true"], "length": ["1", "0.25", "1e-30", "1e30"], "file": ['"part.stl"'],
@@ -139,6 +140,9 @@ class Table:
             return sphere + "[spheres]\ncount = 3\ndiameter = { " + ", ".join(body) + " }\n"
         if self.group in ("stage", "output"):
             return sphere + spheres + f"[[{self.group}]]\n" + "\n".join(body) + "\n"
+        if self.group == "zone":
+            box = 'container = { kind = "box", size = [20, 20, 20] }\n'
+            return 'unit = "mm"\n' + box + "[[zone]]\n" + "\n".join(body) + "\n"
         if self.group == "engine":
             return sphere + spheres + "[engine]\n" + "\n".join(body) + "\n"
         if self.name == "scene":
@@ -152,10 +156,9 @@ class Table:
 
 
 def tables_of(reference):
-    """All but zones, whose keys are those of [spheres], and whose place depends on the container, and but tables that
-    stand within others: their values are samples of the keys that they stand in."""
+    """All but tables that stand within others: their values are samples of the keys that they stand in."""
     for group in reference["groups"]:
-        if group["name"] in ("zone", "table"):
+        if group["name"] == "table":
             continue
         for table in group["tables"]:
             yield Table(group["name"], group["selector"], table["name"],
