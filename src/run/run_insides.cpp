@@ -76,6 +76,7 @@ class Filling {
     std::atomic<std::size_t> next = 0, ended = 0;
     std::exception_ptr thrown;
     std::mutex turn;
+    tell(0, 0);
     const auto work = [&](const std::function<void(const Progress&)>& of_one) {
       try {
         for (std::size_t t; !options_.monitor.stop() && (t = next++) < packings; ++ended)
