@@ -147,6 +147,7 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
                {"mass", mass ? Json(*mass) : Json()},
                {"classes", classes_json(packing)},
                {"bulk_density", packing.bulk_density},
+               {"cells", packing.cells},
                {"expected_phi", packing.expected_packing_fraction},
                {"expected_phi_of_sizes", packing.expected_of_sizes},
                {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},
