@@ -8,6 +8,7 @@ FITTING = {
     "density": "[0, 1]", "sizes": "[1, 2]", "passing": "[0, 100]",
     "retained": "[100, 0]", "edges": "[1, 2, 3]", "counts": "[1, 1]", "masses": "[1, 1]", "of": "[1, 2]", "dimension": "3",
     "inner_radius": "0.5", "vertices": "[[0, 0], [9, 0], [0, 9]]", "contact": '"gap"',
+    "place": '"z < 5"',
 }
 GOOD = {
     "flag": ["true"], "length": ["1", "0.25", "1e-30", "1e30"], "file": ['"part.stl"'],
@@ -42,8 +43,7 @@ BAD = {
     "solids": ["[]", "1", '""', "[1]", '[{ kind = "periodic", edge = 1 }]', '[{ kind = "sphere" }]'],
     "table": ["[]", "1", '""', "{}", "[{ volume = 2 }]", "{ volume = 0 }", "{ volume = 1, diameter = 1 }",
               "{ volume = 1, rounds = -1 }", "{ volume = 1, name = 1 }"],
-    "tables": ["[]", "1", '""', "[1]", "{}", "[{}]", '[{ name = "a", share = 1 }]', '[{ name = "a", sd = 1 }]',
-               '[{ name = "a", thickness = { mean = 1 } }]', '[{ name = "a", share = 0.5, thickness = 1 }]'],
+    "tables": ["[]", "1", '""', "[1]", "{}"],
     "inside": ["[]", "1", '"inner.toml"', "[1]", "{}", "{ templates = 3 }", '{ scene = "inner.toml", templates = 0 }',
                '{ scene = "inner.toml", class = "a, b" }', '[{ scene = "inner.toml", turned = true }]'],
     "table_lists": ["[]", "1", "[1, 2]", '[{ name = "core" }, { name = "shell" }]', '[[{ share = 0.5 }], []]'],
@@ -149,6 +149,9 @@ class Table:
             return sphere + "[spheres]\ncount = 3\ndiameter = { " + ", ".join(body) + " }\n"
         if self.group in ("stage", "output"):
             return sphere + spheres + f"[[{self.group}]]\n" + "\n".join(body) + "\n"
+        if self.group == "zone":
+            box = 'container = { kind = "box", size = [20, 20, 20] }\n'
+            return 'unit = "mm"\n' + box + "[[zone]]\n" + "\n".join(body) + "\n"
         if self.group == "engine":
             return sphere + spheres + "[engine]\n" + "\n".join(body) + "\n"
         if self.name == "scene":
@@ -162,10 +165,9 @@ class Table:
 
 
 def tables_of(reference):
-    """All but zones, whose keys are those of [spheres], and whose place depends on the container, and but tables that
-    stand within others: their values are samples of the keys that they stand in."""
+    """All but tables that stand within others: their values are samples of the keys that they stand in."""
     for group in reference["groups"]:
-        if group["name"] in ("zone", "table"):
+        if group["name"] == "table":
             continue
         for table in group["tables"]:
             yield Table(group["name"], group["selector"], table["name"],
