@@ -6,6 +6,7 @@
 #include "files/seal.hpp"
 #include "report/class_amounts.hpp"
 #include "report/measured_json.hpp"
+#include "report/nest_levels.hpp"
 #include "report/report.hpp"
 #include "scene/scene_entries.hpp"
 
@@ -153,6 +154,7 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
                {"notes", packing.hints},
                {"size_scale", packing.size_scale}};
   json.update(layers_json(layers));
+  json["levels"] = packing.inside.empty() ? Json::array() : levels_json(packing);
   return json;
 }
 

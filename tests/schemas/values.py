@@ -25,6 +25,7 @@ GOOD = {
     "table": ["{ volume = 2 }", '{ diameter = { distribution = "uniform", min = 1, max = 2 }, rounds = 0 }'],
     "tables": ['[{ name = "core" }]', '[{ name = "core" }, { name = "shell", share = 0.25, material_density = "2 g/cm3" }]'],
     "table_lists": ['[[{ name = "core" }, { name = "shell", share = 0.25 }], []]'],
+    "inside": ['[{ scene = "inner.toml" }]', '{ scene = "inner.toml", templates = 3 }'],
 }
 BAD = {
     "flag": ["1", '"true"', "[]"], "integer": ['"3"', "1.5", "true", "[1]", "1e31"], "number": ["true", "[1]", "{}"],
@@ -43,6 +44,8 @@ BAD = {
     "table": ["[]", "1", '""', "{}", "[{ volume = 2 }]", "{ volume = 0 }", "{ volume = 1, diameter = 1 }",
               "{ volume = 1, rounds = -1 }", "{ volume = 1, name = 1 }"],
     "tables": ["[]", "1", '""', "[1]", "{}"],
+    "inside": ["[]", "1", '"inner.toml"', "[1]", "{}", "{ templates = 3 }", '{ scene = "inner.toml", templates = 0 }',
+               '{ scene = "inner.toml", class = "a, b" }', '[{ scene = "inner.toml", turned = true }]'],
     "table_lists": ["[]", "1", "[1, 2]", '[{ name = "core" }, { name = "shell" }]', '[[{ share = 0.5 }], []]'],
 }
 
@@ -50,6 +53,11 @@ BAD = {
 def text_of(number):
     """A limit as TOML: whole ones without a point."""
     return str(int(number)) if number == int(number) and abs(number) < 2**63 else repr(number)
+
+
+def kind_of(key):
+    """Whose values it takes: those of its type, but for tables of another kind than layers."""
+    return "inside" if key["name"] == "inside" else key["type"]
 
 
 def good_values(key):
@@ -65,13 +73,14 @@ def good_values(key):
         if low is not None and high is not None and not whole:
             values.append(repr(0.5 * (low + min(high, low + 1))))
         return values or ["1"]
-    values = GOOD[key["type"]] + [f'"{word}"' for word in key["words"]]
+    values = GOOD[kind_of(key)] + [f'"{word}"' for word in key["words"]]
     return ["true"] if key["type"] == "flag" and key["min"] else values
 
 
 def bad_values(key, seen):
     from_zero = key["type"] == "lengths" and key["min"] == 0
-    values = list(some(BAD["amounts" if from_zero else key["type"]], seen, ("bad", key["type"], from_zero)))
+    kind = kind_of(key)
+    values = list(some(BAD["amounts" if from_zero else kind], seen, ("bad", kind, from_zero)))
     if key["type"] == "flag" and key["min"]:
         values.append("false")
     if key["type"] in ("integer", "number"):

@@ -101,6 +101,9 @@ std::string sample(const Key& key, int choice) {
       return choice == 0 ? "{ volume = 2.5, rounds = 1 }"
                          : "{ diameter = { distribution = \"uniform\", min = 1, max = 2 } }";
     case Type::tables:
+      if (key.name == "inside")
+        return choice == 0 ? "[{ scene = \"inner.toml\" }]"
+                           : "[{ scene = \"/tmp/a \\\"b\\\".toml\", templates = 3 }]";
       return choice == 0 ? "[{ name = \"core\" }]"
                          : "[{ name = \"core\", material = \"UO2\", material_density = 10800 }, "
                            "{ name = \"shell\", share = 0.30000000000000004 }]";
