@@ -74,11 +74,42 @@ void look(const Packing& packing, const Vector<3>& p, const std::string& between
   }
 }
 
-std::vector<Vector<3>> points_in(const Bounds<3>& bounds, std::size_t count) {
+/// Half of them anywhere in the bounds, the others about the spheres.
+std::vector<Vector<3>> points_in(const Packing& packing, std::size_t count) {
   Random random(3, stream(Stream::test, 1));
+  const Bounds<3> bounds = bounds_of(packing.domain);
+  const auto& x = packing.spheres.x;
   std::vector<Vector<3>> points(count);
-  for (Vector<3>& p : points) p = uniform_point(random, bounds);
+  for (std::size_t k = 0; k < count; ++k) {
+    points[k] = uniform_point(random, bounds);
+    if (k % 2) continue;
+    const std::size_t i = k / 2 % packing.spheres.size();
+    const Vector<3> center(x[0][i], x[1][i], x[2][i]);
+    points[k] =
+        center + 1.1 * packing.spheres.r[i] * std::cbrt(random.uniform()) * uniform_direction<3>(random);
+  }
   return points;
+}
+
+/// Without those that overlap one before them.
+Packing apart(Packing packing) {
+  const Spheres<dynamic> all = packing.spheres;
+  const auto boundary = boundary_of<3>(packing.domain);
+  packing.spheres = Spheres<dynamic>(3);
+  Spheres<dynamic>& kept = packing.spheres;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    bool is_free = true;
+    for (std::size_t j = 0; j < kept.size() && is_free; ++j) {
+      Vector<3> d;
+      for (std::size_t k = 0; k < 3; ++k) d[static_cast<int>(k)] = all.x[k][i] - kept.x[k][j];
+      is_free = boundary.minimum_image(d).norm() > all.r[i] + kept.r[j];
+    }
+    if (!is_free) continue;
+    for (std::size_t k = 0; k < 3; ++k) kept.x[k].push_back(all.x[k][i]);
+    kept.r.push_back(all.r[i]);
+  }
+  EXPECT_GT(kept.size(), 10u);
+  return packing;
 }
 
 /// `is_within` says which points of the bounds the container has, and how far they are from its walls.
@@ -94,7 +125,7 @@ void expect_traced(const Packing& packing, const std::string& format, const std:
   std::string lines;
   const double to_cm = metres_per(packing.scene.unit) / 0.01;
   std::map<std::string, int> met;
-  for (const Vector<3>& p : points_in(bounds_of(packing.domain), count)) {
+  for (const Vector<3>& p : points_in(packing, count)) {
     const double clear = clearance(p);
     Standing standing;
     if (clear > 0) look(packing, p, "background", standing);
@@ -121,7 +152,7 @@ void expect_traced(const Packing& packing, const std::string& format, const std:
 
 Packing with_layers(Packing packing, const std::string& layers) {
   const Scene scene = parse_scene(
-      "unit = \"mm\"\n[container]\nkind = \"box\"\nsize = [9, 9, 9]\n[spheres]\ncount = 60\nradius = 0.1\n"
+      "unit = \"mm\"\n[container]\nkind = \"box\"\nsize = [9, 9, 9]\n[spheres]\ncount = 60\nradius = 0.2\n"
       "layers = " +
           layers,
       "");
@@ -130,7 +161,7 @@ Packing with_layers(Packing packing, const std::string& layers) {
 }
 
 constexpr const char* three_layers =
-    R"([{name = "kernel", share = 0.3}, {name = "buffer", material = "porous carbon"}, {name = "SiC", thickness = 0.004}])";
+    R"([{name = "kernel", share = 0.3}, {name = "buffer", material = "porous_carbon"}, {name = "SiC", thickness = 0.004}])";
 
 double above_floor(const Vector<3>& p, const Cylinder& c) {
   const Vector<3> axis = c.axis.normalized(), q = p - c.base;
@@ -142,7 +173,7 @@ double in_box(const Vector<3>&) { return 1; }
 /// Larger ones than those of `packing_in`.
 Packing grown(Packing packing) {
   for (double& r : packing.spheres.r) r *= 1.9;
-  return packing;
+  return apart(std::move(packing));
 }
 
 Packing layered_cylinder(const Vector<3>& axis) {
@@ -183,8 +214,8 @@ TEST(Levels, ObliqueAxesAndConesAreWalls) {
     const double r = std::hypot(p[0] - 1, p[1]), z = 2 - p[2];
     return std::min({z, 5 - z, (3 - z / 5 - r) / std::hypot(1, 0.2)});
   };
-  expect_traced(with_layers(packing_in(frustum, "kind = \"box\"\nsize = [9, 9, 9]"), three_layers), "mcnp",
-                "m", within_frustum);
+  expect_traced(with_layers(apart(packing_in(frustum, "kind = \"box\"\nsize = [9, 9, 9]")), three_layers),
+                "mcnp", "m", within_frustum);
   const Revolved tube{.base = {0, 0, 0}, .axis = {0, 1, 0}, .profile = {{1, 0}, {3, 0}, {3, 5}, {1, 5}}};
   const auto within_tube = [&](const Vector<3>& p) {
     const double r = std::hypot(p[0], p[2]);
@@ -198,13 +229,14 @@ TEST(Levels, ObliqueAxesAndConesAreWalls) {
     around.spheres.x[2][i] = 2 * std::sin(turn);
   }
   for (const auto& [format, name] : {std::pair{"openmc", "m"}, {"serpent", "m.inp"}, {"mcnp", "m"}})
-    expect_traced(around, format, name, within_tube);
+    expect_traced(apart(around), format, name, within_tube);
 }
 
 TEST(Levels, SpheresAcrossAPeriodicFaceStandOnBothSides) {
   Packing packing = with_layers(grown(exports::periodic(false)), three_layers);
   Spheres<dynamic>& s = packing.spheres;
   s.x[0][0] = 0.01, s.x[1][0] = 3.99, s.x[2][0] = 5.29;  // across a corner
+  packing = apart(packing);
   for (const auto& [format, name] : {std::pair{"openmc", "m"}, {"serpent", "m.inp"}, {"scone", "m"}})
     expect_traced(packing, format, name, in_box);
   const Folder folder;
@@ -257,7 +289,7 @@ Packing nested(bool with_third) {
   Packing core = packing_in(Cylinder{.base = {1, 2, -1}, .radius = 2, .height = 5},
                             "kind = \"cylinder\"\nradius = 2\nheight = 5\nbase = [1, 2, -1]");
   for (double& r : core.spheres.r) r = 0.2;
-  core = with_layers(core, R"([{name = "fuel", radius = 0.15}, {name = "graphite"}])");
+  core = with_layers(apart(core), R"([{name = "fuel", radius = 0.15}, {name = "graphite"}])");
   std::vector<std::shared_ptr<const Packing>> templates;
   for (const int along : {3, 6}) {
     Packing one = held(150, along, 0.4, 10 + static_cast<std::uint64_t>(along));
@@ -297,7 +329,7 @@ void expect_same_spheres(const Packing& read, const Packing& known, const std::s
 }
 
 TEST(Levels, EveryLevelIsReadBack) {
-  const Packing packing = nested(false), box = with_layers(exports::periodic(), three_layers);
+  const Packing packing = nested(false), box = with_layers(apart(exports::periodic()), three_layers);
   const Folder folder;
   for (const auto& [format, name, file] :
        {std::array<std::string, 3>{"openmc", "model", "model/geometry.xml"},
