@@ -7,6 +7,7 @@
 //   scene.sizes = Lognormal{.median = 0.5, .sigma = 0.2};
 //   const Packing packing = run(build(scene));
 
+#include "bernal/cells/write_cells.hpp"
 #include "bernal/fly/fly.hpp"
 #include "bernal/formats/export.hpp"
 #include "bernal/formats/import.hpp"

@@ -61,6 +61,10 @@ std::string meaning_of(VoxelValues values) {
   return "volume fraction of spheres, 0 to 1";
 }
 
+std::string meaning_of(const VoxelImage& image) {
+  return image.meaning.empty() ? meaning_of(image.values) : image.meaning;
+}
+
 void write_nrrd(OutputFile& file, const VoxelImage& image, const Monitor& monitor) {
   const VoxelGrid& grid = image.grid;
   const int dimension = grid.dimension;
@@ -79,7 +83,7 @@ void write_nrrd(OutputFile& file, const VoxelImage& image, const Monitor& monito
   if (bytes_per_voxel(image.values) > 1) header += "endian: little\n";
   header += fmt::format("encoding: raw\nspace origin: ({})\nspace units: {}\nvalues:={}\n\n",
                         joined(first_center(grid), dimension, ","), joined(units, dimension, " "),
-                        meaning_of(image.values));
+                        meaning_of(image));
   file.append(header);
   write_raw(file, image, monitor);
 }
@@ -104,7 +108,7 @@ void write_vti(OutputFile& file, const VoxelImage& image, const Monitor& monitor
   </ImageData>
   <AppendedData encoding="raw">
 _)",
-                          image.unit, meaning_of(image.values), extent, joined(corner, 3, " "),
+                          image.unit, meaning_of(image), extent, joined(corner, 3, " "),
                           joined(grid.spacing, 3, " "), type.array, type.vtk));
   const std::uint64_t bytes = bytes_of(image);
   char length[sizeof bytes];
@@ -116,12 +120,13 @@ _)",
 
 void write_raw(OutputFile& file, const VoxelImage& image, const Monitor& monitor) {
   constexpr std::size_t piece = std::size_t{1} << 20;  // keeps the file's buffer small
-  voxelise(
-      image.spheres, image.domain, image.grid, image.values,
-      [&](std::string_view layers) {
-        for (std::size_t k = 0; k < layers.size(); k += piece) file.append(layers.substr(k, piece));
-      },
-      monitor);
+  const TakeLayers take = [&](std::string_view layers) {
+    for (std::size_t k = 0; k < layers.size(); k += piece) file.append(layers.substr(k, piece));
+  };
+  if (image.make)
+    image.make(image.spheres, image.domain, image.grid, take, monitor);
+  else
+    voxelise(image.spheres, image.domain, image.grid, image.values, take, monitor);
 }
 
 std::string raw_header(const VoxelImage& image) {
@@ -143,7 +148,7 @@ std::string raw_header(const VoxelImage& image) {
   "written": ")",
       type_of(image.values).numpy, joined(shape, dimension, ", "), joined(grid.count, dimension, ", "),
       joined(grid.spacing, dimension, ", "), joined(grid.corner, dimension, ", "),
-      joined(first_center(grid), dimension, ", "), image.unit, meaning_of(image.values));
+      joined(first_center(grid), dimension, ", "), image.unit, meaning_of(image));
   return sealed(std::move(header), "", "\"\n}\n");
 }
 

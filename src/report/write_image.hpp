@@ -14,10 +14,16 @@ struct VoxelImage {
   VoxelValues values = VoxelValues::binary;
   std::string unit;   ///< of lengths: "mm"
   std::string title;  ///< one line
+  /// What the values mean; where it is empty, `meaning_of` them.
+  std::string meaning = {};
+  /// What makes the voxels of other images than `voxelise`, of four bytes.
+  void (*make)(const Spheres<dynamic>&, const Domain&, const VoxelGrid&, const TakeLayers&,
+               const Monitor&) = nullptr;
 };
 
 /// Explanation of the values: "0 pore, 1 sphere, 2 outside the container".
 std::string meaning_of(VoxelValues);
+std::string meaning_of(const VoxelImage&);
 
 // All of these write an array of voxels, x fastest, then y, then z, little-endian, while it is made; see
 // `voxelise` for exceptions and cost. Nothing is certain before the file is closed.

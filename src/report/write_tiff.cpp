@@ -93,7 +93,7 @@ std::string description_of(const VoxelImage& image) {
                                 : fmt::format("voxels of {} x {} x {} {}\n", image.grid.spacing[0],
                                               image.grid.spacing[1], image.grid.spacing[2], image.unit);
   return fmt::format("ImageJ=1.53t\nimages={0}\nslices={0}\n{1}min=0\nmax={2}\n{3}; {4}\n",
-                     image.grid.count[2], scale, white, plain_text(image.title), meaning_of(image.values));
+                     image.grid.count[2], scale, white, plain_text(image.title), meaning_of(image));
 }
 
 }  // namespace

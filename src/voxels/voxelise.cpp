@@ -232,7 +232,7 @@ class Image {
   const Spheres<dynamic>& spheres_;
   const VoxelGrid& grid_;
   Vector<3> periods_;
-  std::optional<Inside> inside_;
+  std::optional<VoxelsInside> inside_;
 };
 
 /// Each sphere is drawn once an image; a sphere of a packing has at most eight.
