@@ -55,7 +55,7 @@ void print_statistics(const Packing& packing, const Cells& cells, const CellStat
 /// Statistics, and the table if one is asked for.
 void look_at_cells(const Packing& packing, const CellsCall& call, ProgressBar& bar) {
   bar.now("cells");
-  const Cells cells = cells_of(packing.spheres, packing.domain, call.options.cells);
+  const Cells cells = cells_of(packing, call.options.cells);
   const std::vector<CellShape> shapes = shapes_of(cells);
   const CellStatistics found = statistics_of(cells, shapes);
   bar.clear();

@@ -1,9 +1,7 @@
 #include "bernal/formats/import.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,6 +11,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "commands.hpp"
+#include "measured.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
 
@@ -25,32 +24,21 @@ constexpr std::size_t listed_at_most = 10;
 struct ImportCall {
   std::filesystem::path file, folder, radii, container;
   ImportOptions options;
-  std::string unit;
+  std::string unit, diameter, radius, box, shift;  // lengths in the file's unit, or with one of their own
   int frame = 0, dimension = 0;
   bool with_mesh = false, no_view = false, quiet = false;
 };
-
-/// The numbers in a word such as "1,2,3".
-std::vector<double> lengths_in(const std::string& word, const std::string& option) {
-  std::vector<double> lengths;
-  for (std::size_t from = 0; from <= word.size();) {
-    const std::size_t end = std::min(word.find(',', from), word.size());
-    double value = 0;
-    const auto [stop, problem] = std::from_chars(word.data() + from, word.data() + end, value);
-    if (problem != std::errc{} || stop != word.data() + end)
-      throw Error(ErrorCode::bad_argument,
-                  fmt::format("{} takes lengths between commas, such as 10,10,20, not \"{}\"", option,
-                              plain_text(word)));
-    lengths.push_back(value);
-    from = end + 1;
-  }
-  return lengths;
-}
 
 /// The options of the library that the command line stands for.
 ImportOptions options_of(const ImportCall& call) {
   ImportOptions options = call.options;
   if (!call.unit.empty()) options.unit = unit_named(call.unit);
+  if (!call.diameter.empty())
+    options.diameter = number_of("--diameter", call.diameter, Quantity::diameter, options.unit);
+  if (!call.radius.empty())
+    options.radius = number_of("--radius", call.radius, Quantity::length, options.unit);
+  if (!call.box.empty()) options.box = lengths_of("--box", call.box, options.unit);
+  if (!call.shift.empty()) options.shift = lengths_of("--shift", call.shift, options.unit);
   if (!call.radii.empty()) options.radii = call.radii;
   if (!call.container.empty()) options.container = read_scene(call.container);
   if (call.frame > 0) options.frame = call.frame;
@@ -127,12 +115,16 @@ Command import_command() {
         "column; or "
         "by number or name, as x=3,y=4,z=5,d=rad",
         "x,y,z,r"},
-       {"--diameter", &options.diameter, "Of every sphere, where the file has no sizes", "D"},
-       excludes({"--radius", &options.radius, "The same", "R"}, "--diameter"),
+       measured(
+           {"--diameter", &call->diameter,
+            "Of every sphere, where the file has no sizes; as all lengths here in the file's unit, or with "
+            "one of its own, \"2 mm\", where --unit says that of the file",
+            "D"}),
+       excludes(measured({"--radius", &call->radius, "The same", "R"}), "--diameter"),
        file({"--radii", &call->radii, "A .npy with the radius of every centre", "FILE.npy"}, {".npy"}),
        with_units({"--unit", &call->unit,
                    "Of the file's lengths, where it does not say it: nm, um, mm, cm, m, in, ft", "UNIT"}),
-       {"--box", [&options](const std::string& word) { options.box = lengths_in(word, "--box"); },
+       {"--box", &call->box,
         "Edges of the box that the spheres lie in, whose corner is at zero: periodic, unless --periodic says "
         "another",
         "a,b,c"},
@@ -151,9 +143,10 @@ Command import_command() {
            {"xyz", "xy", "none"}),
        file({"--container", &call->container, "A scene, whose container the spheres lie in", "SCENE.toml"},
             {".toml"}),
-       {"--shift", [&options](const std::string& word) { options.shift = lengths_in(word, "--shift"); },
-        "Added to every centre first", "x,y,z"},
+       {"--shift", &call->shift, "Added to every centre first", "x,y,z"},
        within({"--frame", &call->frame, "Of a trajectory, from 1; the last if absent", "N"}, 1, 1 << 30),
+       {"--level", &options.level,
+        "Of a file with spheres inside of spheres, such as core-1-1; the outermost if absent", "NAME"},
        within({"--dimension", &call->dimension, "2: the spheres lie in a plane, and discs are meant", "2|3"},
               2, 3),
        {"--with-mesh", &call->with_mesh,
@@ -161,7 +154,8 @@ Command import_command() {
        {"--no-view", &call->no_view, "Leave the view to turn out of report.html, which is then smaller"},
        quiet_option(call->quiet, "Print nothing but errors")},
       {.text =
-           "The spheres lie in the container of --container, else in --box, else in the file's own box, "
+           "The spheres lie in the container of --container, else in --box, else in the file's own container "
+           "or box, "
            "else in the bounds of the spheres as walls; the printed lines say which. They come in the order "
            "of their numbers where they have some; indices count from 0.\n\nOverlaps are no reason to "
            "refuse: the result is certified, or not, and the ten worst overlaps and protrusions are "

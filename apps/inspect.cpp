@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,11 +8,13 @@
 #include <vector>
 
 #include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "bernal/report/json.hpp"
 #include "commands.hpp"
+#include "measured.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
 
@@ -24,8 +24,7 @@ namespace {
 
 struct InspectCall {
   std::filesystem::path mesh;
-  std::string unit;
-  std::optional<double> radius;
+  std::string unit, radius;
   std::filesystem::path places;
   bool json = false;
 };
@@ -143,6 +142,17 @@ void print(const InspectCall& call, const MeshReport& report, const std::optiona
   for (const auto& [name, value] : rows) say(stdout, "{:<{}}  {}\n", name, width, value);
 }
 
+/// Of the file's lengths, where it is known.
+std::optional<Unit> unit_of(const InspectCall& call, const MeshReport& report) {
+  return call.unit.empty() ? unit_of_metres(report.metres) : std::optional(unit_named(call.unit));
+}
+
+double radius_of(const InspectCall& call, const MeshReport& report) {
+  const double radius = number_of("--radius", call.radius, Quantity::length, unit_of(call, report));
+  if (!(radius > 0)) throw Error(ErrorCode::bad_argument, "--radius must be a length above 0");
+  return radius;
+}
+
 int inspect(const InspectCall& call) {
   if (!call.unit.empty()) unit_named(call.unit);  // refuses an unknown one before the file is read
   ProgressBar bar(call.json);
@@ -153,7 +163,10 @@ int inspect(const InspectCall& call) {
   const std::vector<std::string> lines = lines_that_help(file, {}, imported, Effort::thorough);
   if (!call.places.empty()) write_places(imported, call.places);
   std::optional<Chambers> chambers;
-  if (call.radius && report.usable()) chambers = chambers_for(imported.mesh, *call.radius);
+  if (!call.radius.empty()) {
+    const double radius = radius_of(call, report);
+    if (report.usable()) chambers = chambers_for(imported.mesh, radius);
+  }
   bar.clear();
   if (call.json)
     say(stdout, "{}", inspection_as_json(call.mesh, call.unit, report, chambers, lines));
@@ -173,15 +186,10 @@ Command inspect_command() {
                 {mesh_file_endings().begin(), mesh_file_endings().end()}),
            with_units({"--unit", &call->unit,
                        "Unit of the file's lengths: nm, um, mm, cm, m, in, ft; unknown if absent", "UNIT"}),
-           checked({"--radius", &call->radius,
-                    "Count the chambers that spheres of this radius, in the file's lengths, cannot leave",
-                    "LENGTH"},
-                   [](const std::string& text) {
-                     char* end = nullptr;
-                     const double radius = std::strtod(text.c_str(), &end);
-                     const bool fine = *end == '\0' && radius > 0 && std::isfinite(radius);
-                     return fine ? std::string() : text + " is no length above 0";
-                   }),
+           measured({"--radius", &call->radius,
+                     "Count the chambers that spheres of this radius cannot leave: in the file's lengths, or "
+                     "with its own unit, \"2 mm\", where the file or --unit says that of the file",
+                     "LENGTH"}),
            {"--places", &call->places,
             "Write the faces at open edges (orange), at branching edges (blue) and of crossings (red), all "
             "others grey, as a PLY file to look at",

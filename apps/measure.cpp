@@ -18,6 +18,7 @@
 #include "bernal/result/write_section.hpp"
 #include "commands.hpp"
 #include "contact_text.hpp"
+#include "layer_text.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
 #include "say_unpublished.hpp"
@@ -195,6 +196,7 @@ void print(const Packing& packing, const Measurements& measured) {
   if (measured.slab)
     fmt::print("  in the slab     {:.6f}, {}\n", measured.slab->packing_fraction,
                slab_text(packing, *measured.slab));
+  print_layers(stdout, packing);
   if (measured.chambers) print_chambers(packing, *measured.chambers);
   print_contacts(packing, measured);
   print_radial(packing, measured);

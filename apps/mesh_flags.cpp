@@ -1,7 +1,5 @@
 #include "mesh_flags.hpp"
 
-#include <charconv>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -9,9 +7,9 @@
 #include <fmt/ranges.h>
 
 #include "bernal/cad/read_mesh.hpp"
-#include "bernal/core/quantity.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "measured.hpp"
 
 using namespace bernal;
 
@@ -20,19 +18,6 @@ namespace {
 Unit unit_of(const std::filesystem::path& file, const MeshFlags& flags) {
   if (!flags.unit.empty()) return unit_named(flags.unit);
   return flags.file_unit.empty() ? unit_of_mesh_file(file) : unit_named(flags.file_unit);
-}
-
-/// What follows an option: a number, in `unit` where it is a length, or one with its unit.
-double number_of(std::string_view option, const std::string& text, Quantity of, Unit unit) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size()) return number;
-  std::string complaint;
-  const std::optional<double> value = number_with_unit(text, of, unit, complaint);
-  if (!value)
-    throw Error(ErrorCode::bad_argument, fmt::format("{} must be a number, or one with its unit, not {}: {}",
-                                                     option, text, complaint));
-  return *value;
 }
 
 SceneSizes sizes_of(const MeshFlags& flags, Unit unit) {

@@ -15,6 +15,7 @@
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"
 #include "commands.hpp"
+#include "layer_text.hpp"
 #include "mesh_flags.hpp"
 #include "progress_bar.hpp"
 #include "say.hpp"
@@ -45,8 +46,10 @@ void print_result(const Packing& packing, std::uint64_t spheres, double packing_
       spheres == 1 ? "1 sphere" : grouped(spheres) + " spheres",
       mass ? fmt::format(", {:.6g} kg", *mass) : std::string(), packing_fraction,
       packing.expected_packing_fraction, packing.seconds);
+  print_layers(stderr, packing);
   const std::string end = fmt::format("{}: {}", name_of(packing.outcome), packing.reason);
   say(stderr, "outcome    {}\n", falls_short(packing.outcome) ? in_amber(stderr, end) : end);
+  if (packing.cells) say(stderr, "cells      {}\n", cells_in_words(*packing.cells));
   say(stderr, "proof      {}\n", written.certificate.statement);
   for (std::size_t i = 0; i < written.files.size(); ++i)
     say(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
@@ -180,6 +183,7 @@ Command pack_command() {
                   .entries = {{"spheres.csv", "the spheres, in the scene's unit"},
                               {"spheres.vtp", "the same for ParaView"},
                               {"spheres.npy", "in the place of both, see --binary"},
+                              {"weights.npy", "of the cells, where the scene asks for their volumes"},
                               {"scene.toml",
                                "the scene with every default, which verify, measure and "
                                "export read beside the spheres"},

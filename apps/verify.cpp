@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,6 +17,8 @@
 #include "bernal/measure/rest.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/json.hpp"
+#include "bernal/report/zones_in_place.hpp"
+#include "bernal/result/certify_levels.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -71,7 +76,8 @@ std::string least_text(const std::optional<double>& distance) {
   return distance ? fmt::format("{:.9g}", *distance) : "more than twice that";
 }
 
-void print(const Certificate& c, const Domain& domain, std::string_view unit) {
+void print(const Certificate& c, const std::optional<ZonesInPlace>& zones, const VerifyCall& call,
+           const Domain& domain, std::string_view unit) {
   say(stdout, "certified  {}\n", c.certified ? "yes" : "NO");
   say(stdout, "spheres    {}, in {}\n", grouped(c.spheres), unit);
   say(stdout, "pairs      {} near, {} overlapping", grouped(c.pairs_tested), grouped(c.overlapping_pairs));
@@ -91,6 +97,14 @@ void print(const Certificate& c, const Domain& domain, std::string_view unit) {
   }
   say(stdout, "\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
       grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
+  for (const Certificate::Level& level : c.levels)
+    say(stdout, "inside     {}: {} pairs near, {} overlapping, {} walls near, {} protruding, {} misplaced\n",
+        level.name, grouped(level.pairs_tested), grouped(level.overlapping_pairs),
+        grouped(level.walls_tested), grouped(level.protruding_spheres), grouped(level.misplaced));
+  if (zones)
+    say(stdout, "zones      {} spheres not in the place of theirs\n", grouped(zones->misplaced.size()));
+  const std::size_t most = zones ? std::min(zones->misplaced.size(), listed(call.list)) : 0;
+  for (std::size_t k = 0; k < most; ++k) say(stdout, "misplaced  {}\n", zones->misplaced[k]);
   for (const auto& [pair, ratio] : c.overlaps)
     say(stdout, "overlap    {}, ratio {:.3g}\n", pair_text(pair), ratio);
   for (const auto& [sphere, gap] : c.protrusions)
@@ -137,9 +151,13 @@ int verify(const VerifyCall& call) {
   const Scene scene = scene_of(call);
   say_if_unpublished(call.target);
   const bool streamed = is_streamed(call, scene);
-  const Spheres<dynamic> spheres = streamed ? Spheres<dynamic>()
+  const bool by_levels = is_folder(call.target) && !scene.inside.empty();
+  const Packing nest = by_levels ? read_packing(call.target) : Packing();
+  std::vector<std::uint32_t> classes = nest.classes;
+  const Spheres<dynamic> spheres = streamed    ? Spheres<dynamic>()
+                                   : by_levels ? nest.spheres
                                    : is_folder(call.target)  // before another result replaces both
-                                       ? read_spheres_of(scene, call.target)
+                                       ? read_spheres_of(scene, call.target, &classes)
                                        : read_columns_of(scene, call.target);
   const Domain domain = packed_domain_of(scene);
   speak_of(scene.dimension());
@@ -151,16 +169,19 @@ int verify(const VerifyCall& call) {
                                .list = listed(call.list),
                                .threads = call.threads,
                                .monitor = bar.monitor()};
-  Certificate certificate = streamed ? certify_in_slabs(scene, spheres_of_result(call.target), options)
-                                     : certify(spheres, domain, options);
+  Certificate certificate = streamed    ? certify_in_slabs(scene, spheres_of_result(call.target), options)
+                            : by_levels ? certify_levels(nest, options)
+                                        : certify(spheres, domain, options);
   certificate.statement += certified_walls(scene);
+  const auto zones = zones_in_place(scene, domain, spheres, classes, {.threads = call.threads});
+  if (zones) add_to(certificate, *zones);
   std::optional<Rest> rest;
   if (call.settled) rest = rest_of(call, scene, spheres, domain, streamed);
   bar.clear();
   if (call.json) {
-    say(stdout, "{}", certificate_as_json(certificate, rest, spheres));
+    say(stdout, "{}", certificate_as_json(certificate, zones, rest, spheres));
   } else {
-    print(certificate, domain, name_of(scene.unit));
+    print(certificate, zones, call, domain, name_of(scene.unit));
     if (rest) print(*rest, call, spheres, name_of(scene.unit));
   }
   return certificate.certified && (!rest || rest->unsettled == 0) ? exit_code::done : exit_code::no;
@@ -201,6 +222,8 @@ Command verify_command() {
                     {"bernal verify bed.csv --scene scene.toml --settled --gap 1e-3 --list=20",
                      "of others, with three decimals: which spheres do not rest"},
                     {"bernal verify bed.csv --scene scene.toml --list", "other spheres, and what is wrong"}},
-       .exit_codes = {{"0", "certified"}, {"1", "not certified, or not at rest"}, {"2", "bad input"}}},
+       .exit_codes = {{"0", "certified"},
+                      {"1", "not certified, in another zone, or not at rest"},
+                      {"2", "bad input"}}},
       [call] { return verify(*call); }};
 }

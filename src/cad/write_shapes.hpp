@@ -20,6 +20,7 @@ struct BallShape {
   Vector<3> pole, meridian;  ///< perpendicular unit vectors; the start of the surface's parameters
   std::vector<Plane> cuts;
   std::uint32_t type;  ///< from 1
+  double hole = 0;     ///< the radius of a ball of the same centre that is taken out; 0: none
 };
 
 /// A cylinder minus the two balls whose circles it ends in.

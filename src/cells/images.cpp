@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "bernal/measure/cell_weights.hpp"
 #include "cells/cell_file.hpp"
 #include "cells/voxel_labels.hpp"
 #include "files/npy_file.hpp"
@@ -13,17 +14,19 @@ constexpr int usual_resolution = 100;
 constexpr std::string_view meaning_of_labels =
     "i + 1 cell of sphere i (counted from 0), 4294967295 outside the container";
 
-VoxelImage image_of(const CellFile& file) {
+VoxelImage image_of(const CellFile& file, const Spheres<dynamic>& spheres) {
   const CellFileOptions& options = file.options;
   const Domain& domain = file.packing.domain;
   const VoxelGrid grid = options.voxel ? voxel_grid(domain, *options.voxel)
                                        : voxel_grid_of(domain, options.resolution.value_or(usual_resolution));
-  return {.spheres = file.packing.spheres,
+  return {.spheres = spheres,
           .domain = domain,
           .grid = grid,
           .values = VoxelValues::labels,
           .unit = std::string(file.unit()),
           .title = file.title(),
+          .layers = {},
+          .names = {},
           .meaning = std::string(meaning_of_labels),
           .make = label_cells};
 }
@@ -38,7 +41,8 @@ void write_npy_image(OutputFile& out, const VoxelImage& image, const Monitor& mo
 
 template <void (*write)(OutputFile&, const VoxelImage&, const Monitor&)>
 std::string write_labels(const CellFile& file, StagedFolder& staged) {
-  const VoxelImage image = image_of(file);
+  const Spheres<dynamic> spheres = with_weights(file.packing.spheres, file.packing.weights);
+  const VoxelImage image = image_of(file, spheres);
   staged.require_room(static_cast<std::uint64_t>(image.grid.voxels()) *
                       static_cast<std::uint64_t>(bytes_per_voxel(image.values)));
   OutputFile out(staged.add(file.name.string()));

@@ -70,7 +70,7 @@ Grid grid_of(const CellFile& file) {
     grid.neighbours.push_back(shape.neighbours);
     grid.face_count.push_back(shape.faces);
     grid.volume.push_back(shape.volume);
-    grid.radius.push_back(file.cells.radii[i]);
+    grid.radius.push_back(file.packing.spheres.r[i]);
     grid.sphericity.push_back(shape.sphericity);
   }
   return grid;

@@ -6,6 +6,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/measure/cell_weights.hpp"
 #include "bernal/version.hpp"
 #include "cells/cell_file.hpp"
 #include "core/parallel.hpp"
@@ -87,6 +88,10 @@ std::string beside(const fs::path& name, std::string_view ending) {
   return other.string();
 }
 
+Cells cells_of(const Packing& packing, const CellsOptions& options) {
+  return cells_of(with_weights(packing.spheres, packing.weights), packing.domain, options);
+}
+
 std::vector<CellFormat> cell_formats() {
   std::vector<CellFormat> all;
   for (const CellWriter& writer : cell_writers()) all.push_back(writer.format);
@@ -125,7 +130,7 @@ WrittenCells write_cells(const Packing& packing, const CellFileOptions& options,
   CellFile file{.packing = packing, .options = options, .name = name, .monitor = monitor};
   if (packing.spheres.empty()) refuse("there are no spheres, and no cells");
   if (!writer.is_image) {
-    file.cells = cells_of(packing.spheres, packing.domain, options.cells);
+    file.cells = cells_of(packing, options.cells);
     file.shapes = shapes_of(file.cells);
   }
   StagedFolder staged(folder);
@@ -150,7 +155,7 @@ void write_cell_table(const Packing& packing, const Cells& cells, const std::vec
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const CellShape& shape = shapes[i];
     for (int k = 0; k < cells.dimension; ++k) out.add(cells.centers[i][k], ",");
-    out.add(cells.radii[i], ",", shape.volume, ",", shape.surface);
+    out.add(packing.spheres.r[i], ",", shape.volume, ",", shape.surface);
     for (int k = 0; k < cells.dimension; ++k) out.add(",", shape.centroid[k]);
     out.add(",", shape.sphericity, ",", shape.aspect, ",", shape.faces, ",", shape.neighbours, ",",
             shape.edges, ",", shape.corners, "\n");

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -65,5 +66,23 @@ std::optional<Unit> unit_of_metres(double metres) {
 
 Ratio conversion_ratio(Unit from, Unit to) { return quotient(definition_of(from), definition_of(to)); }
 double conversion_factor(Unit from, Unit to) { return conversion_ratio(from, to).nearest(); }
+
+bool is_at_most(double length, Unit unit, double other, Unit unit_of_other) {
+  const auto [above, below] = conversion_ratio(unit_of_other, unit);
+  // A product and what rounding it lost are together the exact product; the nearest doubles of two products
+  // stand in their order, or are equal.
+  const double left = length * below, right = other * above;
+  if (left != right) return left < right;
+  return std::fma(length, below, -left) <= std::fma(other, above, -right);
+}
+
+double largest_at_most(double length, Unit from, Unit to) {
+  double largest = length * conversion_factor(from, to);
+  while (!is_at_most(largest, to, length, from)) largest = std::nextafter(largest, 0.0);
+  for (double next = largest; is_at_most(next, to, length, from);
+       next = std::nextafter(next, std::numeric_limits<double>::infinity()))
+    largest = next;
+  return largest;
+}
 
 }  // namespace bernal

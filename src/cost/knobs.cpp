@@ -202,7 +202,7 @@ Subject subject_of(const Scene& scene) {
                   .box_follows = plan.box_follows};
   subject.is_predicted = subject.scene.target.predicted;
   subject.scene.target.predicted = false;  // but the number that it stands for
-  for (MeshFile* mesh : subject.scene.container.meshes())
+  for (MeshFile* mesh : subject.scene.meshes())
     for (std::filesystem::path* file : mesh->files())
       if (!mesh->surface_called(*file)) *file = std::filesystem::absolute(*file).lexically_normal();
   return subject;

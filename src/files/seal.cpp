@@ -54,9 +54,10 @@ std::string sealed(std::string text, std::string_view before, std::string_view a
   return text.append(seal_begins).append(digits).append(seal_ends).append(after);
 }
 
-std::string sealed_script(std::string text, const std::vector<fs::path>& with) {
-  for (const fs::path& file : with) text += "\n# " + answer_for(file);
-  return sealed(std::move(text), "\n# ", "\n");
+std::string sealed_script(std::string text, const std::vector<fs::path>& with, std::string_view comment) {
+  const std::string line = "\n" + std::string(comment);
+  for (const fs::path& file : with) text += line + answer_for(file);
+  return sealed(std::move(text), line, "\n");
 }
 
 bool is_sealed(std::string_view text) {

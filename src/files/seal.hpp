@@ -9,9 +9,9 @@ namespace bernal {
 /// The text, and at its end what says that bernal wrote it, between what makes it a comment there: a digest
 /// of all the rest, so that whoever changes anything breaks the seal.
 std::string sealed(std::string text, std::string_view before, std::string_view after);
-/// Of a script whose comments begin with #; it answers for the files that go with it, which stand as they
-/// will.
-std::string sealed_script(std::string text, const std::vector<std::filesystem::path>& with = {});
+/// Of a script whose comments begin so; it answers for the files that go with it, which stand as they will.
+std::string sealed_script(std::string text, const std::vector<std::filesystem::path>& with = {},
+                          std::string_view comment = "# ");
 
 /// Whether the text has a seal that is whole.
 bool is_sealed(std::string_view text);

@@ -98,8 +98,8 @@ bool StagedFolder::stage() {
 }
 
 fs::path StagedFolder::add(const std::string& name) {
-  names_.push_back(name);
-  const fs::path there = staging_ / name;
+  names_.push_back(below_ + name);
+  const fs::path there = staging_ / names_.back();
   std::error_code problem;
   fs::create_directories(there.parent_path(), problem);
   if (problem) fail_to_write("cannot write here", problem.message(), folder_);

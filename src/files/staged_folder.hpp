@@ -42,8 +42,27 @@ class StagedFolder {
   void require_room(std::uint64_t bytes) const;
   /// Writes all of that file.
   void write(const std::string& name, std::string_view text);
-  std::filesystem::path written(const std::string& name) const { return staging_ / name; }
+  std::filesystem::path written(const std::string& name) const { return staging_ / below_ / name; }
+  /// All that have been added, with the folders below.
   const std::vector<std::string>& names() const { return names_; }
+
+  /// While it lives the names that `add`, `write` and `written` are given are names in a folder below: that of
+  /// a part that could stand for itself.
+  class Below {
+   public:
+    Below(StagedFolder& staged, const std::string& folder) : staged_(staged), outer_(staged.below_) {
+      staged.below_ = outer_ + folder + "/";
+    }
+    ~Below() { staged_.below_ = outer_; }
+    Below(const Below&) = delete;
+    Below& operator=(const Below&) = delete;
+
+   private:
+    StagedFolder& staged_;
+    std::string outer_;
+  };
+  /// "inside/pebble/template-001/", or nothing.
+  const std::string& below() const { return below_; }
 
   /// Gives every added file its final name; returns those, in the order of `add`. The files `replaced`, of an
   /// earlier result, go, whether new ones have their names or not. A link, a device or a pipe is none, and is
@@ -63,6 +82,7 @@ class StagedFolder {
   Lock lock_;                                ///< of the staging folder, while this process lives
   std::vector<std::filesystem::path> made_;  ///< folders that did not exist, outermost first
   std::vector<std::string> names_;
+  std::string below_;
   bool published_ = false;
 };
 

@@ -39,7 +39,7 @@ std::vector<fs::path> sources_of(const Packing& packing) {
     if (!fs::is_regular_file(part, unknown)) return;
     for (const fs::path& file : files_of_part_beside(part)) files.push_back(file);
   };
-  for (const MeshFile* mesh : scene.container.meshes()) {
+  for (const MeshFile* mesh : scene.meshes()) {
     add_part(mesh->file);
     for (const fs::path& obstacle : mesh->obstacles) add_part(obstacle);
   }
@@ -70,7 +70,9 @@ fs::path target_of(const fs::path& named) {
 /// packing, a file of any result, or (for files that go with the named one) a file that bernal did not write.
 /// Precondition: the output is complete.
 void require_free_places(const Packing& packing, const Output& output, const fs::path& folder) {
-  const std::vector<std::string> names = files_of(output);
+  std::vector<std::string> names = files_of(output);
+  if (const auto beside = format_of(output).beside)
+    std::ranges::copy(beside(packing, output), std::back_inserter(names));
   const std::vector<fs::path> sources = sources_of(packing);
   const Manifest of_result = manifest_of(folder);
   std::vector<fs::path> files, of_others;
@@ -248,7 +250,7 @@ std::string write_output(const Packing& packing, const Output& output, StagedFol
 
 WrittenExport write_export(const Packing& packing, const Output& asked, const fs::path& file,
                            const Monitor& monitor) {
-  if (table_of(asked).is_folder && stands(file))
+  if (is_folder(table_of(asked), file) && stands(file))
     throw Error(ErrorCode::cannot_write, "stands there already; give another ‹file›, or move it away",
                 {file.string()});
   const fs::path meant = target_of(file);

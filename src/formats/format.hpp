@@ -113,6 +113,7 @@ struct FileContents {
   Spheres<dynamic> spheres;  ///< `r` is empty if the file has no sizes
   std::optional<Unit> unit = {};
   std::optional<FileBox> box = {};
+  std::optional<Scene> container = {};  ///< with the container, where the file says it
   bool is_flat = false;  ///< the file states two dimensions; the third coordinate is ignored
   std::string note = {};
 
@@ -146,8 +147,9 @@ struct Format {
   // Writing; `writes` is empty if the format is not written.
   std::string_view writes = {};             ///< the program, and what the file holds for it
   std::vector<std::string_view> keys = {};  ///< its options besides those of all formats
-  std::string_view file = {};               ///< this and the next seven are as in an OutputTable
+  std::string_view file = {};               ///< this and the next eight are as in an OutputTable
   std::vector<std::string_view> endings = {};
+  std::string_view alone = {};
   int least_dimension = 3, most_dimensions = 3;
   std::optional<Unit> unit = {};
   std::string_view sizes = "radius";
@@ -167,6 +169,9 @@ struct Format {
   std::string (*remark)(const Exported&) = nullptr;
   /// Writes the files and returns what they hold, for formats that know it only then.
   std::string (*write_with_note)(const Exported&, StagedFolder&) = nullptr;
+
+  /// Files beside the file whose number the packing decides; the file answers for them, see `sealed_script`.
+  std::vector<std::string> (*beside)(const Packing&, const Output&) = nullptr;
 
   // Reading; `reads` is empty if the format is not read. The next two are as in an ImportFormat.
   std::string_view reads = {}, unit_from = {};

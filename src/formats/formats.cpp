@@ -24,6 +24,9 @@ Format gsd_format();
 Format pfc_format();
 Format mfix_format();
 Format openmc_format();
+Format serpent_format();
+Format scone_format();
+Format mcnp_format();
 Format povray_format();
 Format npy_format();
 Format gmsh_format();
@@ -45,11 +48,11 @@ namespace {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> all = {
-      vtk_format(),    dump_format(),    lammps_format(), liggghts_format(), yade_format(),   esys_format(),
-      extxyz_format(), gsd_format(),     pfc_format(),    mfix_format(),     openmc_format(), povray_format(),
-      npy_format(),    gmsh_format(),    step_format(),   brep_format(),     stl_format(),    obj_format(),
-      ply_format(),    threemf_format(), gltf_format(),   snappy_format(),   nrrd_format(),   vti_format(),
-      tiff_format(),   raw_format(),     table_format()};
+      vtk_format(),    dump_format(), lammps_format(), liggghts_format(), yade_format(),    esys_format(),
+      extxyz_format(), gsd_format(),  pfc_format(),    mfix_format(),     openmc_format(),  serpent_format(),
+      scone_format(),  mcnp_format(), povray_format(), npy_format(),      gmsh_format(),    step_format(),
+      brep_format(),   stl_format(),  obj_format(),    ply_format(),      threemf_format(), gltf_format(),
+      snappy_format(), nrrd_format(), vti_format(),    tiff_format(),     raw_format(),     table_format()};
   return all;
 }
 
@@ -68,6 +71,7 @@ OutputTable table_for(const Format& format) {
   OutputTable made{.keys = output_entry(format.name, format.writes, format.keys),
                    .file = format.file,
                    .endings = format.endings,
+                   .alone = format.alone,
                    .least_dimension = format.least_dimension,
                    .most_dimensions = format.most_dimensions,
                    .unit = format.unit,
@@ -251,6 +255,11 @@ std::vector<ExportKey> export_keys() {
 }
 
 Output output_of(std::string_view format, const std::map<std::string, std::string>& words) {
+  if (format == "vtk" || format == "vtp" || format == "vtu")
+    refuse_word(fmt::format(
+        "unknown format \"{}\": a result has its spheres as spheres.vtp already, and vti is a grid "
+        "of voxels",
+        format));
   const OutputTable& table =
       named(output_tables(), format, [](const OutputTable& one) { return one.name(); });
   Output output{.format = std::string(format)};
@@ -293,6 +302,7 @@ const Format& format_of(const std::filesystem::path& file, const ImportOptions& 
                              : named(readers(), options.format, [](const Format& one) { return one.name; });
   if (!options.columns.empty()) require_option(reader, "columns");
   if (options.frame) require_option(reader, "frame");
+  if (!options.level.empty()) require_option(reader, "level");
   if (options.radii) require_option(reader, "radii");
   return reader;
 }

@@ -1,10 +1,34 @@
 #include <fmt/format.h>
 
 #include "formats/format.hpp"
+#include "formats/layered.hpp"
 #include "report/write_image.hpp"
 
 namespace bernal {
 namespace {
+
+/// What the values of the image stand for: materials, layers, or one material's fraction.
+void name_layers(const Exported& file, VoxelImage& image) {
+  const Output& output = file.output;
+  if (output.values == VoxelValues::fraction && output.material.empty()) return;
+  LayeredSpheres spheres = layered(file);
+  for (const std::uint32_t kind : spheres.kind) {
+    const std::uint32_t material = spheres.kinds[kind].material;
+    const std::uint32_t value = output.values == VoxelValues::layers             ? kind + 1
+                                : output.values == VoxelValues::materials        ? material + 1
+                                : spheres.materials[material] == output.material ? 1
+                                                                                 : 0;
+    image.layers.value.push_back(static_cast<std::uint8_t>(value));
+  }
+  image.layers.first = std::move(spheres.first);
+  image.layers.outer = std::move(spheres.outer);
+  if (output.values == VoxelValues::layers)
+    for (const LayeredSpheres::Kind& kind : spheres.kinds) image.names.push_back(kind.name);
+  else if (output.values == VoxelValues::materials)
+    image.names = std::move(spheres.materials);
+  else
+    image.names = {output.material};
+}
 
 VoxelImage image_of(const Exported& file) {
   const Output& output = file.output;
@@ -12,7 +36,10 @@ VoxelImage image_of(const Exported& file) {
       output.voxel
           ? voxel_grid(file.domain, *output.voxel * conversion_factor(file.packing.scene.unit, file.unit()))
           : voxel_grid_of(file.domain, *output.resolution);
-  return {file.spheres, file.domain, grid, output.values, std::string(name_of(file.unit())), file.title()};
+  VoxelImage image{file.spheres, file.domain, grid, output.values, std::string(name_of(file.unit())),
+                   file.title()};
+  if (output.values != VoxelValues::binary && output.values != VoxelValues::labels) name_layers(file, image);
+  return image;
 }
 
 template <void (*write)(OutputFile&, const VoxelImage&, const Monitor&)>
@@ -32,7 +59,8 @@ void write_raw_and_header(const Exported& file, StagedFolder& staged) {
 
 /// "100 x 100 x 250 voxels of 0.02 mm, 0 pore, 1 sphere, 2 outside the container".
 std::string note_of_image(const Exported& file) {
-  const VoxelGrid grid = image_of(file).grid;
+  const VoxelImage image = image_of(file);
+  const VoxelGrid& grid = image.grid;
   std::string counts, edges;
   for (int k = 0; k < grid.dimension; ++k) {
     counts += fmt::format("{}{}", k == 0 ? "" : " x ", grid.count[static_cast<std::size_t>(k)]);
@@ -40,7 +68,7 @@ std::string note_of_image(const Exported& file) {
   }
   return fmt::format("{} voxels of {} {}, {}", counts,
                      grid.has_cubes() ? fmt::format("{:.6g}", grid.spacing[0]) : edges, name_of(file.unit()),
-                     meaning_of(file.output.values));
+                     meaning_of(image));
 }
 
 std::string remark_on_scale(const Exported& file) {
@@ -56,7 +84,7 @@ Format image_format(std::string_view name, std::string_view help, std::string_vi
                     void (*write)(const Exported&, StagedFolder&)) {
   return {.name = name,
           .writes = help,
-          .keys = {"unit", "voxel", "resolution", "values"},
+          .keys = {"unit", "voxel", "resolution", "values", "material"},
           .file = file,
           .least_dimension = 2,
           .most_dimensions = 3,

@@ -151,7 +151,7 @@ ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why
   return made;
 }
 
-ImportDomain domain_of_scene(FileContents& contents, Unit unit, const Scene& scene) {
+ImportDomain domain_of_scene(FileContents& contents, Unit unit, const Scene& scene, const std::string& why) {
   if (scene.dimension() != contents.spheres.dimension())
     throw Error(ErrorCode::bad_packing,
                 fmt::format("the spheres have {} dimensions, but the container of the scene has {}; "
@@ -172,8 +172,7 @@ ImportDomain domain_of_scene(FileContents& contents, Unit unit, const Scene& sce
   } else {
     made.domain = packed_domain_of(scene);
   }
-  made.words = fmt::format("{}, the container of {}", name_of(made.domain),
-                           scene.file.empty() ? "a scene" : scene.file.string());
+  made.words = fmt::format("{}, {}", name_of(made.domain), why);
   return made;
 }
 
@@ -197,7 +196,13 @@ ImportDomain domain_of_import(FileContents& contents, Unit unit, const Reading& 
   if (options.container) {
     if (!options.periodic.empty() || !options.box.empty())
       refuse_words("‹container› says what the spheres lie in; leave ‹box› and ‹periodic› out");
-    return domain_of_scene(contents, unit, *options.container);
+    const std::filesystem::path& scene = options.container->file;
+    return domain_of_scene(contents, unit, *options.container,
+                           "the container of " + (scene.empty() ? "a scene" : scene.string()));
+  }
+  if (contents.container && options.periodic.empty() && options.box.empty()) {
+    const Scene container = *contents.container;
+    return domain_of_scene(contents, unit, container, "as the file says");
   }
   std::string why;
   const FileBox box = box_of_import(contents, options, why);

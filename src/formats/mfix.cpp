@@ -14,6 +14,7 @@ namespace {
 void write_mfix(const Exported& file, TextFile& out) {
   const int dimension = file.dimension();
   const bool has_phases = file.type_count > 1, is_flat = dimension == 2;
+  const bool has_densities = !file.type_densities.empty();
   const Bounds<3> box = file.box();
   out.add(filled(particle_input_dat,
                  {{"TITLE", file.title()},
@@ -23,13 +24,17 @@ void write_mfix(const Exported& file, TextFile& out) {
                   {"DIMENSION", std::to_string(dimension)},
                   {"PARTICLES", std::to_string(file.size())},
                   {"PHASE", has_phases ? "T" : "F          1"},
-                  {"DENSITY", fmt::format("{}", file.density())},
+                  {"DENSITY", has_densities ? "T" : fmt::format("F          {}", file.density())},
+                  {"DENSITY_IN_WORDS", has_densities ? ", the density" : ""},
+                  {"LAST", has_densities ? "   Density" : ""},
                   {"VELOCITY", is_flat ? "0.0 0.0" : "0.0 0.0 0.0"},
                   {"AXES", fmt::format("{}{}", is_flat ? "" : "Z   ", has_phases ? "Phase_ID   " : "")}}));
   for (std::size_t i = 0; i < file.size(); ++i) {
     for (int k = 0; k < dimension; ++k) out.add(file.coordinate(k, i), ' ');
     if (has_phases) out.add(file.types[i], ' ');
-    out.add(2 * file.spheres.r[i], '\n');
+    out.add(2 * file.spheres.r[i]);
+    if (has_densities) out.add(' ', file.density_of(file.types[i]));
+    out.add('\n');
   }
 }
 

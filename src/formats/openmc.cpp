@@ -3,13 +3,14 @@
 #include "files/file_kind.hpp"
 #include "files/seal.hpp"
 #include "formats/npy.hpp"
+#include "formats/openmc_model.hpp"
 #include "formats/templates.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
 namespace {
 
-constexpr std::string_view script_ending_py = ".py";
+constexpr std::string_view script_ending_py = ".py", xml_ending = ".xml";
 
 /// A point or a direction in Python.
 std::string tuple_of(const Vector<3>& v) { return fmt::format("({})", row_of(v, ", ")); }
@@ -76,16 +77,21 @@ std::string script_text(const Exported& file, const std::string& radii) {
                             {"REGION", std::visit(RegionLines{file}, file.domain)}});
 }
 
-void write_openmc(const Exported& file, StagedFolder& staged) {
+/// Centres, radii and a module where the name is that of an array; else the levels of the packing.
+std::string write_openmc(const Exported& file, StagedFolder& staged) {
+  const std::string ending = file.output.file.extension().string();
+  if (ending.empty() || ending == xml_ending) return write_openmc_model(file, staged);
   const std::string radii = file_beside(file.output.file, radii_ending);
   write_npy(staged.add(file.output.file.string()), file.size(), 3,
             [&](std::size_t i, std::size_t k) { return file.spheres.x[k][i]; });
   write_npy(staged.add(radii), file.size(), 0, [&](std::size_t i, std::size_t) { return file.spheres.r[i]; });
   staged.write(file_beside(file.output.file, script_ending_py),
                sealed_script(script_text(file, radii), {staged.written(radii)}));
+  return {};
 }
 
 FileContents read_openmc(const Reading& reading) {
+  if (reading.file.extension() == xml_ending) return read_openmc_model(reading);
   FileContents contents = read_npy(reading);
   contents.unit = reading.options.unit.value_or(Unit::cm);
   return contents;
@@ -95,17 +101,24 @@ FileContents read_openmc(const Reading& reading) {
 
 Format openmc_format() {
   return {.name = "openmc",
-          .writes = "OpenMC: centres (.npy), their radii and a Python module for TRISO particles",
+          .writes =
+              "OpenMC: centres (.npy), their radii and a Python module for TRISO particles; or CSG of all "
+              "levels, in a folder, or in one file where the name ends in .xml",
           .file = "openmc.npy",
           .endings = {radii_ending, script_ending_py},
+          .alone = xml_ending,
           .unit = Unit::cm,
-          .write = write_openmc,
-          .reads = "OpenMC centres, .npy of N x 3, with FILE_radii.npy beside them, ‹radii› or ‹radius›",
+          .is_folder = true,
+          .write_with_note = write_openmc,
+          .reads =
+              "OpenMC centres, .npy of N x 3, with FILE_radii.npy beside them, ‹radii› or ‹radius›; "
+              "geometry.xml that bernal wrote",
           .unit_from = "cm",
-          .options = {"columns", "radii"},
+          .options = {"columns", "radii", "level"},
           .recognises =
               [](const FileBeginning& file) {
-                return is_npy(file) && kind_of_file(radii_beside(file.file)) == FileKind::regular;
+                return is_openmc_model(file) ||
+                       (is_npy(file) && kind_of_file(radii_beside(file.file)) == FileKind::regular);
               },
           .read = read_openmc};
 }

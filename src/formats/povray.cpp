@@ -6,6 +6,7 @@
 
 #include "domain/revolved_surface.hpp"
 #include "formats/foreign_lines.hpp"
+#include "formats/layered.hpp"
 #include "formats/templates.hpp"
 #include "formats/text_file.hpp"
 #include "report/legend.hpp"
@@ -74,8 +75,49 @@ struct OutlineLines {
 
 std::string note_of_picture(const Exported& file) {
   const double length = length_in_picture(file.domain);
-  if (length == 1) return "radii";
-  return fmt::format("radii; in the picture a length of 1 is {} {}", length, name_of(file.unit()));
+  const std::string what = shows_layers(file)
+                               ? "radii of layers; what is in front of the middle is cut away, unless Cut = 0"
+                               : "radii";
+  if (length == 1) return what;
+  return fmt::format("{}; in the picture a length of 1 is {} {}", what, length, name_of(file.unit()));
+}
+
+std::string texture(std::string_view name, std::size_t k, const Colour& colour) {
+  return fmt::format(
+      "#declare {}{} = texture {{ pigment {{ srgb <{}, {}, {}> }} finish {{ ambient 0.18 "
+      "diffuse 0.75 specular 0.15 roughness 0.03 }} }}\n",
+      name, k, colour.red, colour.green, colour.blue);
+}
+
+/// One line a sphere, which a reader takes for the packing; `texture_of` says how each looks.
+template <class TextureOf>
+void write_spheres(const Exported& file, TextFile& out, const TextureOf& texture_of) {
+  for (std::size_t i = 0; i < file.size(); ++i)
+    out.add(ball_mark, file.coordinate(0, i), ',', file.coordinate(2, i), ',', file.coordinate(1, i), ">,",
+            file.spheres.r[i], texture_of(i), "}\n");
+}
+
+/// Whole spheres, or their shells, of which what is in front of a plane is cut away, so that they are seen.
+void write_layers(const Exported& file, const LayeredSpheres& layers, const Vector<3>& middle,
+                  TextFile& out) {
+  const auto material_of = [&](std::size_t k) { return layers.kinds[layers.kind[k]].material; };
+  out.add("#declare Cut = 1;  // 0: whole spheres\n#declare CutAt = ", middle[1],
+          ";  // what is nearer than this is cut away\n#if (Cut = 0)\n");
+  write_spheres(file, out, [&](std::size_t i) {
+    return fmt::format(" texture{{Material{}}}", material_of(layers.first[i + 1] - 1));
+  });
+  out.add(
+      "#else\n#macro Shell(Center, Outer, Inner, Look)\n"
+      "#if (Center.z + Outer > CutAt)\ndifference { sphere { Center, Outer }\n"
+      "#if (Inner > 0) sphere { Center, Inner } #end\n#if (Center.z - Outer < CutAt) plane { z, CutAt } "
+      "#end\n"
+      "texture { Look } }\n#end\n#end\n");
+  for (std::size_t i = 0; i < file.size(); ++i)
+    for (std::size_t k = layers.first[i]; k < layers.first[i + 1]; ++k)
+      out.add("Shell(<", file.coordinate(0, i), ',', file.coordinate(2, i), ',', file.coordinate(1, i), ">,",
+              layers.outer[k], ',', k == layers.first[i] ? 0.0 : layers.outer[k - 1], ",Material",
+              material_of(k), ")\n");
+  out.add("#end\n");
 }
 
 /// The camera is far enough away to see all of the domain and protruding spheres, in pictures at least as
@@ -87,13 +129,11 @@ void write_picture(const Exported& file, double length, TextFile& out) {
   const double distance = (0.5 * bounds.size().norm() + file.largest_radius()) / std::sin(half_angle);
   const auto at = [&](const Vector<3>& from) { return vector_of(middle + distance * from); };
   std::string textures;
-  for (int c = 0; c < colour_classes; ++c) {
-    const Colour colour = size_colour((c + 0.5) / colour_classes);
-    textures += fmt::format(
-        "#declare Size{} = texture {{ pigment {{ srgb <{}, {}, {}> }} finish {{ ambient 0.18 "
-        "diffuse 0.75 specular 0.15 roughness 0.03 }} }}\n",
-        c, colour.red, colour.green, colour.blue);
-  }
+  const LayeredSpheres layers = shows_layers(file) ? layered(file) : LayeredSpheres();
+  for (std::size_t k = 0; k < layers.materials.size(); ++k)
+    textures += fmt::format("// {}\n{}", layers.materials[k], texture("Material", k, kind_colour(k)));
+  for (std::size_t c = 0; layers.materials.empty() && c < colour_classes; ++c)
+    textures += texture("Size", c, size_colour((static_cast<double>(c) + 0.5) / colour_classes));
   const std::string_view unit = name_of(file.unit());
   out.add(filled(povray_pov, {{"TITLE", file.title()},
                               {"UNIT", length == 1 ? std::string(unit)
@@ -108,10 +148,11 @@ void write_picture(const Exported& file, double length, TextFile& out) {
                               {"THICKNESS", fmt::format("{}", 0.002 * bounds.size().norm())},
                               {"SIZES", textures},
                               {"OUTLINE", std::visit(OutlineLines(), file.domain)}}));
+  if (!layers.materials.empty()) return write_layers(file, layers, middle, out);
   const SizeScale sizes(file.spheres.r);
-  for (std::size_t i = 0; i < file.size(); ++i)
-    out.add(ball_mark, file.coordinate(0, i), ',', file.coordinate(2, i), ',', file.coordinate(1, i), ">,",
-            file.spheres.r[i], " texture{Size", sizes.colour_class(file.spheres.r[i]), "}}\n");
+  write_spheres(file, out, [&](std::size_t i) {
+    return fmt::format(" texture{{Size{}}}", sizes.colour_class(file.spheres.r[i]));
+  });
 }
 
 void write_povray(const Exported& file, TextFile& out) {
@@ -153,18 +194,20 @@ FileContents read_povray(const Reading& reading) {
 }  // namespace
 
 Format povray_format() {
-  return {
-      .name = "povray",
-      .writes = "POV-Ray scene with camera and light, spheres coloured by size, the outline of the domain",
-      .keys = {"unit"},
-      .file = "povray.pov",
-      .write_text = write_povray,
-      .note = note_of_picture,
-      .reads = "POV-Ray scenes that bernal wrote",
-      .unit_from = "\"lengths in mm\" in its first line",
-      .recognises =
-          [](const FileBeginning& file) { return file.begins("// bernal ") && file.has(swap_mark); },
-      .read = read_povray};
+  return {.name = "povray",
+          .writes =
+              "POV-Ray scene with camera and light, spheres coloured by size, the outline of the domain; or "
+              "their "
+              "layers, by material, cut open",
+          .keys = {"unit", "layers"},
+          .file = "povray.pov",
+          .write_text = write_povray,
+          .note = note_of_picture,
+          .reads = "POV-Ray scenes that bernal wrote",
+          .unit_from = "\"lengths in mm\" in its first line",
+          .recognises =
+              [](const FileBeginning& file) { return file.begins("// bernal ") && file.has(swap_mark); },
+          .read = read_povray};
 }
 
 }  // namespace bernal

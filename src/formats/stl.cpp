@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "formats/layered.hpp"
 #include "formats/surface_file.hpp"
 
 namespace bernal {
@@ -21,11 +22,15 @@ std::array<float, 3> normal_of(const FloatPoint& a, const FloatPoint& b, const F
 }
 
 std::string write_stl_file(const Exported& file, StagedFolder& staged) {
-  const Surfaces surfaces = surfaces_of(file);
+  const std::string& layer = file.output.layer;
+  const BallsOfLayer of_layer =
+      layer.empty() ? BallsOfLayer{file.spheres, file.size()} : balls_of_layer(file, layer);
+  const Surfaces surfaces(of_layer.balls, file.domain, file.output.deflection, file.output.surface,
+                          file.monitor, {of_layer.outer, true});
   OutputFile out(staged.add(file.output.file.string()));
   write_stl(out, file, surfaces);
   out.close();
-  return surfaces.note();
+  return layer.empty() ? surfaces.note() : fmt::format("the layer {}: {}", layer, surfaces.note());
 }
 
 }  // namespace
@@ -73,7 +78,7 @@ void write_stl(OutputFile& out, const Exported& file, const Surfaces& surfaces) 
 
 Format stl_format() {
   return surface_format("stl", "triangles for meshers and printers, binary, one solid", "spheres.stl",
-                        write_stl_file);
+                        write_stl_file, {"layer"});
 }
 
 }  // namespace bernal

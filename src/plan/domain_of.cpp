@@ -282,14 +282,14 @@ Domain packed_domain_of(const Scene& scene) {
         "pack writes beside the spheres does",
         scene.container.locations.whole);
   Scene copy = scene;  // the spheres are certified in the walls as they are now
-  for (MeshFile* mesh : copy.container.meshes()) mesh->sha256.clear();
+  for (MeshFile* mesh : copy.meshes()) mesh->sha256.clear();
   copy.start = {};  // which may have gone
   return domain_of(copy);
 }
 
 std::vector<std::filesystem::path> changed_files(const Scene& scene) {
   std::vector<std::filesystem::path> changed;
-  for (const MeshFile* mesh : scene.container.meshes()) {
+  for (const MeshFile* mesh : scene.meshes()) {
     const std::vector<std::filesystem::path> files = files_of(*mesh);
     for (std::size_t k = 0; k < std::min(files.size(), mesh->sha256.size()); ++k)
       if (digest_of_part(scene, files[k]) != in_lower_case(mesh->sha256[k])) changed.push_back(files[k]);

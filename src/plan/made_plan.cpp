@@ -8,6 +8,8 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "plan/cell_sizes.hpp"
+#include "plan/plan_insides.hpp"
 #include "plan/plan_zones.hpp"
 
 namespace bernal {
@@ -45,12 +47,16 @@ Plan plan_of_largest(const Scene& stated) {
 
 }  // namespace
 
-Plan build(const Scene& scene) {
+Plan build(const Scene& scene) { return build_inside(scene, {}); }
+
+Plan build_inside(const Scene& scene, const ScenesAround& around) {
   const int dimension = scene.dimension();
   try {
     Plan plan = !scene.zones.empty() ? plan_of_zones(scene)
                 : scene.largest      ? plan_of_largest(scene)
+                : scene.cells        ? plan_of_cells(scene)
                                      : made_plan(scene);
+    plan_insides(plan, around);
     plan.caution = in_dimension(dimension, plan.caution);
     for (PlanItem& item : plan.items) item.what = in_dimension(dimension, item.what);
     for (std::string& hint : plan.hints) hint = in_dimension(dimension, hint);

@@ -8,10 +8,16 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "bernal/cad/read_mesh.hpp"
 #include "bernal/plan/plan.hpp"
+#include "cad/diagnose/diagnose_mesh.hpp"
+#include "cad/repair/obstacles.hpp"
 #include "cad/repair/plane_cut.hpp"
 #include "cad/repair/surface_pieces.hpp"
+#include "domain/flattened.hpp"
+#include "geometry/measures.hpp"
 #include "plan/part_below.hpp"
 #include "scene/zones.hpp"
 
@@ -153,6 +159,63 @@ Domain domain_of_solid(const Scene& scene, const Zone& zone) {
   }
 }
 
+/// Zones within surfaces, each taken out of what the others leave of the container.
+class SurfacesInContainer {
+ public:
+  SurfacesInContainer(Scene& scene, const Domain& whole) : scene_(scene), whole_(whole) {}
+
+  Domain domain_of(Zone& zone) {
+    Domain domain = read(zone);
+    if (rest_.triangles.empty()) {
+      if (is_periodic(whole_)) refuse(zone, "mesh", "a \"mesh\" lies in a container without periods");
+      rest_ = flattened(whole_, RoundAs::within).mesh;
+    }
+    const Mesh& surface = std::get<Mesh>(domain);
+    const double before = signed_volume(rest_), own = signed_volume(surface);
+    const std::string name = zone.mesh->file.filename().string();
+    try {
+      cad::take_out(rest_, surface, name);
+    } catch (const OptionError& error) {
+      refuse(zone, "mesh", error.what());
+    }
+    const double outside = own - (before - signed_volume(rest_));
+    if (outside > negligible_overlap * before)
+      refuse(
+          zone, "mesh",
+          fmt::format("{:.3g} % of what is in {} lies outside of the container or in another zone: move or "
+                      "cut it in CAD; round walls are flat pieces on their inner side here",
+                      100 * outside / own, name));
+    return domain;
+  }
+  Domain rest() {
+    cad::Triangles rest{.mesh = std::move(rest_)};
+    if (const MeshReport report = cad::diagnose_mesh(rest); !report.usable())
+      throw Error(ErrorCode::bad_scene,
+                  fmt::format("the surfaces of zones leave walls that spheres cannot be packed between: {}; "
+                              "move them a little",
+                              fmt::join(report.problems, ", ")),
+                  scene_.zones.front().locations.of("mesh"));
+    return std::move(rest.mesh);
+  }
+
+ private:
+  Domain read(Zone& zone) {
+    Scene of = scene_of_zone(scene_, zone);
+    MeshFile file = *zone.mesh;
+    if (const auto* mesh = std::get_if<MeshFile>(&scene_.container)) file.unit = mesh->unit;
+    of.container = std::move(file);
+    of.container.locations.keys["sha256"] = zone.locations.of("mesh_sha256");
+    std::string notes, caution;
+    Domain domain = bernal::domain_of(of, notes, caution);
+    zone.mesh->sha256 = std::get<MeshFile>(of.container).sha256;
+    return domain;
+  }
+
+  Scene& scene_;
+  const Domain& whole_;
+  Mesh rest_;
+};
+
 Domain domain_of_place(const Scene& scene, std::size_t k, const Domain& whole) {
   const Zone& zone = scene.zones[k];
   std::optional<Domain> part;
@@ -204,10 +267,13 @@ std::vector<Domain> between_zones(const Scene& scene, const Domain& whole) {
 }
 
 void require_one_kind(const Scene& scene) {
-  const auto is_other = [](const Zone& zone) { return !zone.solids.empty() ? 2 : zone.chamber ? 1 : 0; };
+  const auto kind_of = [](const Zone& zone) {
+    return zone.mesh ? 3 : !zone.solids.empty() ? 2 : zone.chamber ? 1 : 0;
+  };
   for (const Zone& zone : scene.zones)
-    if (is_other(zone) != is_other(scene.zones.front()))
-      refuse(zone, "", "zones are all places, all solids or all chambers of a container");
+    if (kind_of(zone) != kind_of(scene.zones.front()))
+      refuse(zone, "",
+             "zones are all places, all solids, all chambers or all surfaces (\"mesh\") in a container");
 }
 
 void require_one_piece(const Scene& scene, std::size_t pieces) {
@@ -228,25 +294,31 @@ void require_one_piece(const Scene& scene, std::size_t pieces) {
 }  // namespace
 
 bool has_own_domains(const Scene& scene) {
-  return std::ranges::any_of(scene.zones,
-                             [](const Zone& zone) { return !zone.solids.empty() || zone.chamber; });
+  return std::ranges::any_of(
+      scene.zones, [](const Zone& zone) { return !zone.solids.empty() || zone.chamber || zone.mesh; });
 }
 
-std::vector<PlaceOfZone> places_of_zones(const Scene& scene, const Domain& whole) {
+std::vector<PlaceOfZone> places_of_zones(Scene& scene, const Domain& whole) {
   require_one_kind(scene);
   const auto rest = static_cast<std::uint32_t>(scene.zones.size());
   std::vector<PlaceOfZone> places;
   ChambersOfMesh chambers(whole);
+  SurfacesInContainer surfaces(scene, whole);
   for (std::uint32_t k = 0; k < rest; ++k) {
-    const Zone& zone = scene.zones[k];
+    Zone& zone = scene.zones[k];
     places.push_back({!zone.solids.empty() ? domain_of_solid(scene, zone)
                       : zone.chamber       ? chambers.domain_of(zone)
+                      : zone.mesh          ? surfaces.domain_of(zone)
                                            : domain_of_place(scene, k, whole),
                       k});
   }
   require_apart(scene, places, volume_of(whole));
   if (!scene.draws()) return places;
-  std::vector<Domain> others = scene.zones.front().chamber ? chambers.others() : between_zones(scene, whole);
+  std::vector<Domain> others;
+  if (scene.zones.front().mesh)
+    others.push_back(surfaces.rest());
+  else
+    others = scene.zones.front().chamber ? chambers.others() : between_zones(scene, whole);
   require_one_piece(scene, others.size());
   for (Domain& piece : others) places.push_back({std::move(piece), rest});
   return places;

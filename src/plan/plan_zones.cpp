@@ -31,9 +31,18 @@ void add_items(Plan& whole, const Plan& part) {
   }
 }
 
-void add_hints(Plan& whole, const Plan& part) {
-  for (const std::string& hint : part.hints)
-    if (std::ranges::find(whole.hints, hint) == whole.hints.end()) whole.hints.push_back(hint);
+/// What is true of every part once, the rest with the name of its part.
+void add_hints(Plan& whole, const std::vector<SphereClass>& classes) {
+  const auto has = [](const Plan& plan, const std::string& hint) {
+    return std::ranges::find(plan.hints, hint) != plan.hints.end();
+  };
+  for (const PlannedPart& part : whole.parts)
+    for (const std::string& hint : part.plan.hints) {
+      const bool is_of_all =
+          std::ranges::all_of(whole.parts, [&](const PlannedPart& each) { return has(each.plan, hint); });
+      std::string told = is_of_all ? hint : fmt::format("{}: {}", classes[part.sphere_class].name, hint);
+      if (!has(whole, told)) whole.hints.push_back(std::move(told));
+    }
 }
 
 /// What a scene says of an amount, once its plan has made a count of a mass.
@@ -62,7 +71,6 @@ void sum_up(Plan& whole) {
     if (whole.caution.empty() && !plan.caution.empty())
       whole.caution = fmt::format("{}: {}", classes[part.sphere_class].name, plan.caution);
     add_items(whole, plan);
-    add_hints(whole, plan);
     std::erase_if(whole.absent, [&](const std::string& effect) {
       return std::ranges::find(plan.absent, effect) == plan.absent.end();
     });
@@ -71,6 +79,7 @@ void sum_up(Plan& whole) {
     const bool is_zone = part.sphere_class < whole.scene.zones.size();
     take_amount(is_zone ? whole.scene.zones[part.sphere_class].spheres : whole.scene, plan.scene);
   }
+  add_hints(whole, classes);
   whole.attainable_packing_fraction = whole.expected_packing_fraction;
   whole.radii = radii.size() == 1 ? std::move(radii.front())
                                   : make_mixture(std::move(radii), std::move(counts), Basis::number);

@@ -7,6 +7,7 @@
 
 #include "bernal/core/dimension.hpp"
 #include "engine/engine_plan.hpp"
+#include "measure/weighted_cells.hpp"
 #include "plan/estimate.hpp"
 #include "plan/few_large.hpp"
 #include "plan/stages.hpp"
@@ -140,7 +141,7 @@ void price_effects(Plan& plan) {
   const auto is_planned = [&](const std::string& name) {
     return std::ranges::find(plan.items, name, &PlanItem::name) != plan.items.end();
   };
-  std::vector<std::string> all = {"start", "walls", std::string(exact_walls_effect)};
+  std::vector<std::string> all = {"start", "walls", std::string(exact_walls_effect), cells_effect};
   for (const StageEntry* stage : stage_entries())
     all.insert(all.end(), stage->may_bring.begin(), stage->may_bring.end());
   for (const std::string& name : all)

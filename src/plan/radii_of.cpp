@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bernal/plan/plan.hpp"
+#include "plan/cell_sizes.hpp"
 #include "plan/start.hpp"
 #include "scene/size_kinds.hpp"
 #include "sizes/scaled.hpp"
@@ -92,6 +93,7 @@ Radii radii_of(const Scene& scene) {
     Scene copy = scene;
     return radii_there(read_start(copy).spheres.r);
   }
+  if (scene.cells) return first_radii_of(scene);
   try {
     Radii radii = std::visit(MakeRadii{scene.sizes_are_diameters ? 0.5 : 1.0}, scene.sizes);
     return scene.scale == 1 ? std::move(radii) : std::make_unique<Scaled>(std::move(radii), scene.scale);

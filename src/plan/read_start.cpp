@@ -164,6 +164,7 @@ std::unique_ptr<SizeDistribution> radii_there(const std::vector<double>& radii) 
 SceneRadii asked_radii_of(const Scene& scene, std::size_t count) {
   SceneRadii made;
   if (!scene.zones.empty()) return made;  // each has sizes of its own
+  if (scene.cells) return made;           // sizes are what the cells make of them
   Scene copy = scene;
   try {
     made.first = read_start(copy).spheres.r;

@@ -11,6 +11,7 @@
 #include "bernal/report/section.hpp"
 #include "bernal/scene/packing_bytes.hpp"
 #include "bernal/scene/sphere_classes.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "bernal/viewer/view_page.hpp"
 #include "python/bindings.hpp"
 #include "python/lock.hpp"
@@ -44,6 +45,42 @@ py::tuple classes_of_packing(const Packing& packing) {
   return py::make_tuple(
       py::array_t<std::uint32_t>(static_cast<py::ssize_t>(packing.classes.size()), packing.classes.data()),
       all);
+}
+
+template <class T>
+py::array_t<T> copy_of(const std::vector<T>& column) {
+  return py::array_t<T>(static_cast<py::ssize_t>(column.size()), column.data());
+}
+
+/// Of each layer of each class the spheres that have it, and where it begins and ends in them.
+py::list layers_of_packing(const Packing& packing) {
+  SphereLayers layers;
+  {
+    const Unlocked others_run;
+    layers = layers_of(packing);
+  }
+  py::list all;
+  if (layers.of_class.empty()) return all;
+  const std::vector<SphereClass> classes = classes_of(packing.scene);
+  for (std::size_t c = 0; c < layers.of_class.size(); ++c) {
+    std::vector<std::uint32_t> spheres;
+    for (std::uint32_t i = 0; i < packing.spheres.size(); ++i)
+      if (c == (packing.classes.empty() ? 0 : packing.classes[i])) spheres.push_back(i);
+    for (std::size_t k = 0; k < layers.of_class[c].size(); ++k) {
+      const Layer& layer = layers.of_class[c][k];
+      std::vector<double> inner, outer;
+      for (const std::uint32_t i : spheres) {
+        inner.push_back(k == 0 ? 0 : layers.of(i)[k - 1]);
+        outer.push_back(layers.of(i)[k]);
+      }
+      all.append(py::dict(py::arg("class") = classes[c].name, py::arg("name") = layer.name,
+                          py::arg("material") = material_of(layer),
+                          py::arg("material_density") = layer.material_density,
+                          py::arg("spheres") = copy_of(spheres), py::arg("inner") = copy_of(inner),
+                          py::arg("outer") = copy_of(outer)));
+    }
+  }
+  return all;
 }
 
 py::list history_of(const Packing& packing) {
@@ -92,11 +129,6 @@ std::vector<double> coordination_of(const Packing& packing, const std::vector<do
   return all;
 }
 
-template <class T>
-py::array_t<T> copy_of(const std::vector<T>& column) {
-  return py::array_t<T>(static_cast<py::ssize_t>(column.size()), column.data());
-}
-
 /// An array with a column for each axis.
 py::array_t<double> rows_of(const std::vector<std::vector<double>>& columns, std::size_t rows) {
   py::array_t<double> made(
@@ -138,6 +170,12 @@ void bind_packing(py::module_& module) {
   py::class_<Packing, PackingPointer>(module, "Packing")
       .def("columns", &columns_of)
       .def("classes", &classes_of_packing)
+      .def("weights",
+           [](const Packing& packing) {
+             return py::array_t<double>(static_cast<py::ssize_t>(packing.weights.size()),
+                                        packing.weights.data());
+           })
+      .def("layers", &layers_of_packing)
       .def("history", &history_of)
       .def("effects", &effects_of)
       .def("bounds", &bounds_of_domain)

@@ -60,7 +60,7 @@ Surface arrays_of(const PolygonSurface& surface) {
 
 Surfaces surfaces_of(const Scene& scene) {
   Surfaces all;
-  for (const MeshFile* mesh : scene.container.meshes())
+  for (const MeshFile* mesh : scene.meshes())
     for (const auto& [name, surface] : mesh->surfaces) all.emplace(name.string(), arrays_of(*surface));
   return all;
 }
@@ -71,7 +71,7 @@ Scene scene_of_text(const std::string& toml, const std::filesystem::path& name, 
                     const PackingPointer& start) {
   Scene scene = parse_scene(toml, name);
   scene.file.clear();
-  for (MeshFile* mesh : scene.container.meshes())
+  for (MeshFile* mesh : scene.meshes())
     for (std::filesystem::path* file : mesh->files()) {
       const auto given = surfaces.find(file->filename().string());
       if (given == surfaces.end()) continue;

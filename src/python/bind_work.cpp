@@ -70,7 +70,9 @@ JobPointer verify_job(const PackingPointer& of, std::optional<std::size_t> list,
                                        .monitor = monitor});
     if (certificate.cancelled) throw Cancelled();
     certificate.statement += certified_walls(scene);
-    return text(certificate_as_json(certificate));
+    const auto zones = zones_in_place(scene, of->domain, of->spheres, of->classes, {.threads = threads});
+    if (zones) add_to(certificate, *zones);
+    return text(certificate_as_json(certificate, zones));
   });
 }
 
@@ -211,7 +213,7 @@ JobPointer import_file_job(const Path& file, const std::string& format, const st
                            const std::optional<Path>& radii, const Text& unit, const std::vector<double>& box,
                            const std::string& periodic, const Scene* container,
                            const std::vector<double>& shift, std::optional<int> frame,
-                           std::optional<int> dimension) {
+                           std::optional<int> dimension, const std::string& level) {
   const ImportOptions options{.format = format,
                               .columns = columns,
                               .diameter = diameter,
@@ -223,6 +225,7 @@ JobPointer import_file_job(const Path& file, const std::string& format, const st
                               .container = scene_if(container),
                               .shift = shift,
                               .frame = frame,
+                              .level = level,
                               .dimension = dimension};
   return import_job([=](const Monitor& monitor) { return import_packing(file, options, monitor); });
 }

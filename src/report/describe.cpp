@@ -41,9 +41,12 @@ std::string describe_parts(const Plan& plan) {
   std::string text;
   for (const PlannedPart& part : plan.parts) {
     const bool is_zone = part.sphere_class < plan.scene.zones.size();
-    const std::string place =
-        is_zone ? fmt::format("{}", fmt::join(plan.scene.zones[part.sphere_class].place, ", "))
-                : std::string();
+    std::string place;
+    if (is_zone) {
+      const Zone& zone = plan.scene.zones[part.sphere_class];
+      place =
+          zone.mesh ? plain_text(zone.mesh->file.string()) : fmt::format("{}", fmt::join(zone.place, ", "));
+    }
     text +=
         fmt::format("{:<9}  {}{}: {}; {}; about {:.3g} spheres\n", is_zone ? "zone" : "the rest",
                     classes[part.sphere_class].name, place.empty() ? "" : ", " + place,
@@ -78,6 +81,11 @@ std::string describe(const Plan& plan) {
 
 std::string describe_sizes(const Scene& scene) {
   if (!scene.draws()) return "the sizes are those of the start";
+  if (const auto& cells = scene.cells)
+    return cells->volume
+               ? fmt::format("cells, volume in {}³: {}", name_of(scene.unit), sizes_in_words(*cells->volume))
+               : fmt::format("cells, diameter of the ball of their volume in {}: {}", name_of(scene.unit),
+                             sizes_in_words(*cells->diameter));
   const bool is_one = std::holds_alternative<Constant>(scene.sizes);
   std::string scale;
   if (scene.largest && !is_one) scale = "; all on the largest scale on which they fit";
@@ -88,6 +96,15 @@ std::string describe_sizes(const Scene& scene) {
                      each_once(scene.sizes)          ? ""
                      : scene.draw == Draw::quantiles ? "; drawn by quantiles"
                                                      : "");
+}
+
+std::string cells_in_words(const PackedCells& cells) {
+  const auto& median = cells.quantiles[cells.quantiles.size() / 2];
+  return fmt::format(
+      "median volume {:.4g}, {:.4g} wanted; Kolmogorov distance {:.2g}, {:.2g} by the radii alone; mean "
+      "sphericity {:.3f}; {} Newton step{}",
+      median.reached, median.wanted, cells.distance, cells.distance_by_radii, cells.mean_sphericity,
+      cells.steps, cells.steps == 1 ? "" : "s");
 }
 
 std::string amount_in_words(const Scene& scene, double diameter, bool are_equal, std::uint64_t count) {

@@ -13,8 +13,22 @@ namespace bernal {
 
 BERNAL_KEYS(Certificate::Overlap, pair, ratio)
 BERNAL_KEYS(Certificate::Protrusion, sphere, gap)
+BERNAL_KEYS(Certificate::Level, name, packings, packed, filled, spheres, pairs_tested, walls_tested,
+            decided_double, decided_exact, overlapping_pairs, protruding_spheres, misplaced)
 BERNAL_KEYS(Packing::BulkDensity, asked, reached)
+BERNAL_KEYS(PackedCells::Quantile, share, wanted, by_radii, reached)
 BERNAL_KEYS(Milestone, stage, spheres, packing_fraction, potential, max_overlap, seconds)
+
+static void to_json(Json& json, const PackedCells& cells) {
+  json = {{"scale", cells.scale},
+          {"quantiles", cells.quantiles},
+          {"kolmogorov_by_radii", cells.distance_by_radii},
+          {"kolmogorov", cells.distance},
+          {"largest_deviation", cells.error},
+          {"mean_sphericity", cells.mean_sphericity},
+          {"rounds", cells.rounds},
+          {"newton_steps", cells.steps}};
+}
 
 /// An effect that is only counted is timed within another.
 static void to_json(Json& json, const Effect& effect) {
@@ -45,12 +59,17 @@ static void to_json(Json& json, const Certificate& c) {
           {"least_wall_distance", c.least_wall_distance}};
   if (!c.overlaps.empty()) json["overlaps"] = c.overlaps;
   if (!c.protrusions.empty()) json["protrusions"] = c.protrusions;
+  if (!c.levels.empty()) {
+    json["levels"] = c.levels;
+    json["spheres_of_all_levels"] = c.spheres_of_all_levels;
+  }
   json["seconds"] = c.seconds;
 }
 
-std::string certificate_as_json(const Certificate& c, const std::optional<Rest>& rest,
-                                const Spheres<dynamic>& spheres) {
+std::string certificate_as_json(const Certificate& c, const std::optional<ZonesInPlace>& zones,
+                                const std::optional<Rest>& rest, const Spheres<dynamic>& spheres) {
   Json json = c;
+  if (zones) json["misplaced"] = zones->misplaced;
   if (rest) {
     json["settled"] = {{"at_rest", rest->unsettled == 0},
                        {"unsettled", rest->unsettled},
@@ -110,27 +129,30 @@ Json classes_json(const Packing& packing) {
   return all;
 }
 
-Json run_json(const Packing& packing, std::uint64_t spheres, double packing_fraction) {
+Json run_json(const Packing& packing, std::uint64_t spheres, double packing_fraction,
+              const LayerAmounts& layers) {
   const std::optional<double> mass = mass_of(packing, packing_fraction);
-  return {{"version", packing.program.version},
-          {"commit", packing.program.commit},
-          {"packings_number", packing.program.packings_number},
-          {"seed", packing.seed},
-          {"threads", packing.threads},
-          {"outcome", name_of(packing.outcome)},
-          {"reason", packing.reason},
-          {"n", spheres},
-          {"dimension", packing.spheres.dimension()},
-          {"unit", name_of(packing.scene.unit)},
-          {"phi", packing_fraction},
-          {"mass", mass ? Json(*mass) : Json()},
-          {"classes", classes_json(packing)},
-          {"bulk_density", packing.bulk_density},
-          {"expected_phi", packing.expected_packing_fraction},
-          {"expected_phi_of_sizes", packing.expected_of_sizes},
-          {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},
-          {"notes", packing.hints},
-          {"size_scale", packing.size_scale}};
+  Json json = {{"version", packing.program.version},
+               {"commit", packing.program.commit},
+               {"packings_number", packing.program.packings_number},
+               {"seed", packing.seed},
+               {"threads", packing.threads},
+               {"outcome", name_of(packing.outcome)},
+               {"reason", packing.reason},
+               {"n", spheres},
+               {"dimension", packing.spheres.dimension()},
+               {"unit", name_of(packing.scene.unit)},
+               {"phi", packing_fraction},
+               {"mass", mass ? Json(*mass) : Json()},
+               {"classes", classes_json(packing)},
+               {"bulk_density", packing.bulk_density},
+               {"expected_phi", packing.expected_packing_fraction},
+               {"expected_phi_of_sizes", packing.expected_of_sizes},
+               {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},
+               {"notes", packing.hints},
+               {"size_scale", packing.size_scale}};
+  json.update(layers_json(layers));
+  return json;
 }
 
 /// The part after the measurements, common to both kinds of report.
@@ -175,7 +197,7 @@ std::string sealed_text_of(const Json& json) {
 
 std::string json_of(const Report& report) {
   const Packing& packing = report.packing;
-  Json json = run_json(packing, packing.spheres.size(), packing.packing_fraction());
+  Json json = run_json(packing, packing.spheres.size(), packing.packing_fraction(), report.layers);
   if (!report.cell.empty()) json["cell"] = report.cell;
   json.update(measured_figures(report.measured));
   add_proof(json, report);
@@ -183,7 +205,7 @@ std::string json_of(const Report& report) {
 }
 
 std::string json_of(const StreamedReport& report) {
-  Json json = run_json(report.packing, report.spheres, report.packing_fraction);
+  Json json = run_json(report.packing, report.spheres, report.packing_fraction, {});
   json["not_measured"] = report.not_measured;
   add_proof(json, report);
   return sealed_text_of(json);

@@ -40,6 +40,9 @@ double round_length(double length) {
   return decade;
 }
 
+/// Most words of the legend are narrower.
+double width_of(std::string_view words) { return 9.5 * static_cast<double>(words.size()); }
+
 }  // namespace
 
 void append_words(std::string& out, double x, double y, double size, std::string_view words) {
@@ -52,7 +55,21 @@ void append_words(std::string& out, double x, double y, double size, std::string
 void append_legend(std::string& out, const Canvas& canvas, const SizeScale& sizes, std::string_view unit,
                    const std::function<std::string(int)>& fill) {
   const double y = canvas.height + legend_height / 2;
-  const double length = round_length(0.2 * canvas.width / canvas.scale);
+  const auto size = [&](double r) {  // with enough digits to distinguish the two
+    const bool same = fmt::format("{:.3g}", sizes.smallest()) == fmt::format("{:.3g}", sizes.largest());
+    return fmt::format("{:.{}g}", r, same ? 5 : 3);
+  };
+  constexpr double step = 17, shortest_bar = 10;
+  const double end = canvas.width - canvas_margin - 100, behind_words = end - step * colour_classes - 8;
+  const std::string words = sizes.empty() || sizes.equal() ? "" : "radius " + size(sizes.smallest());
+  // Beside the words of a narrow picture there is room for a shorter bar only.
+  double length = round_length(0.2 * canvas.width / canvas.scale);
+  const auto overlaps = [&] {
+    const double label = width_of(fmt::format("{:g} {}", length, unit)) + 22;
+    return canvas_margin + length * canvas.scale + label > behind_words - width_of(words);
+  };
+  while (!words.empty() && overlaps() && length * canvas.scale > 2.5 * shortest_bar)
+    length = round_length(0.99 * length);
   const double bar = length * canvas.scale;
   out += fmt::format(
       "<g font-family=\"system-ui,sans-serif\" font-size=\"17\" fill=\"#8590a0\">\n"
@@ -63,12 +80,6 @@ void append_legend(std::string& out, const Canvas& canvas, const SizeScale& size
     out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {:.3g} {}</text>\n",
                        canvas.width - canvas_margin, y + 6, sizes.smallest(), unit);
   } else if (!sizes.empty()) {
-    const auto size = [&](double r) {  // with enough digits to distinguish the two
-      const bool same = fmt::format("{:.3g}", sizes.smallest()) == fmt::format("{:.3g}", sizes.largest());
-      return fmt::format("{:.{}g}", r, same ? 5 : 3);
-    };
-    constexpr double step = 17;
-    const double end = canvas.width - canvas_margin - 100;
     out += fmt::format("<text x=\"{:.1f}\" y=\"{}\">{} {}</text>\n", end + 8, y + 6, size(sizes.largest()),
                        unit);
     for (int c = 0; c < colour_classes; ++c) {
@@ -76,8 +87,8 @@ void append_legend(std::string& out, const Canvas& canvas, const SizeScale& size
                          end - step * (colour_classes - c - 0.5), y, 4.0 + 4.0 * c / (colour_classes - 1),
                          fill(c));
     }
-    out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">radius {}</text>\n",
-                       end - step * colour_classes - 8, y + 6, size(sizes.smallest()));
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", behind_words, y + 6,
+                       words);
   }
   out += "</g>\n";
 }

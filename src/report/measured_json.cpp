@@ -25,6 +25,8 @@ BERNAL_KEYS(Chambers::Uncovered, radius, share, error)
 BERNAL_KEYS(ColumnProfile::Layer, from, to, porosity)
 BERNAL_KEYS(ContactsOfSome::At, contact_gap, coordination)
 BERNAL_KEYS(DrawnComparison, missing, scale, largest_deviation, above_largest)
+BERNAL_KEYS(LayerAmount, of_class, name, material, material_density, spheres, volume, packing_fraction, mass)
+BERNAL_KEYS(MaterialAmount, name, volume, packing_fraction, mass)
 BERNAL_KEYS(LocalPacking::Quantile, share, packing_fraction)
 BERNAL_KEYS(PoreSizes::Quantile, share, distance)
 BERNAL_KEYS(SizeCorrelation::Neighbours, correlation, error, pairs)
@@ -253,6 +255,10 @@ std::string text_of(const Json& json) {
   return text;
 }
 
+Json layers_json(const LayerAmounts& amounts) {
+  return {{"layers", amounts.layers}, {"materials", amounts.materials}};
+}
+
 Json measured_figures(const Measurements& measured) {
   Json json = contacts_json(measured, measured.contacts);
   json.update({{"held_from_gap", measured.held_from},
@@ -276,6 +282,7 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
                {"unit", name_of(packing.scene.unit)},
                {"phi", measured.packing_fraction},
                domain_json(packing.domain)};
+  json.update(layers_json(layer_amounts(packing)));
   json.update(contacts_json(measured, measured.contacts));
   json["fabric"] = measured.of_contacts.fabric;
   json["spheres_by_contacts"] = measured.of_contacts.spheres_by_contacts();

@@ -6,6 +6,7 @@
 
 #include "bernal/domain/domain.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/scene/layer_amounts.hpp"
 
 // JSON common to reports and measurements, for this room's writers.
 
@@ -31,6 +32,9 @@ Json::object_t::value_type domain_json(const Domain&);
 
 /// For report.json: contacts, then the figures of all measurements; `bernal measure` returns the tables.
 Json measured_figures(const Measurements&);
+
+/// `layers` and `materials`, empty where the scene names no layers.
+Json layers_json(const LayerAmounts&);
 
 /// Indented by two spaces a level. Invalid UTF-8, which names may contain, is replaced.
 std::string text_of(const Json&);

@@ -23,7 +23,8 @@ ReferenceJson json_of_key(const ReferenceKey& key) {
           {"required", key.required},
           {"is_diameter", key.is_diameter},
           {"acts", key.acts},
-          {"quantity", key.quantity}};
+          {"quantity", key.quantity},
+          {"table", key.table}};
 }
 
 }  // namespace

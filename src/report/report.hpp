@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/scene/layer_amounts.hpp"
 #include "bernal/scene/packing.hpp"
 #include "bernal/verify/certificate.hpp"
 
@@ -21,6 +22,7 @@ struct Report {
   std::map<std::string, std::string> files = {};  ///< of the result, see `Manifest`
   std::vector<std::string> made_from = {};        ///< source files, relative to the result's folder
   std::string cell = {};                          ///< see WriteOptions
+  LayerAmounts layers = {};                       ///< what there is of each that the scene names
 };
 
 /// The same for a packing that is not in memory; `packing` has no spheres.

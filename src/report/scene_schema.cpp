@@ -112,8 +112,14 @@ SceneSchema value_of_key(const ReferenceKey& key, const std::string& sizes) {
   if (key.type == "flag")
     return key.min > 0 ? SceneSchema{{"const", true}} : SceneSchema{{"type", "boolean"}};
   if (key.type == "word") return one_of_words(key);
-  if (key.type == "distribution" && key.words.empty()) return refers_to(key.name);
+  // Numbers are what they are in a radius, which is no diameter.
+  if (key.type == "distribution" && key.words.empty())
+    return refers_to(key.name == "volume" ? "radius" : key.name);
   if (key.type == "parts") return array_of(refers_to(sizes), 1);
+  if (key.type == "table") return refers_to(key.table);
+  if (key.type == "tables") return either(refers_to(key.table), array_of(refers_to(key.table), 1));
+  if (key.type == "table_lists") return array_of(array_of(refers_to(key.table), 0), 1);
+  if (!key.table.empty()) return either(refers_to(key.type), refers_to(key.table));
   const bool from_zero = key.type == "lengths" && key.min == 0;
   SceneSchema value = key.type == "number" || key.type == "integer"
                           ? within_range(key)
@@ -239,6 +245,8 @@ std::string scene_schema_as_json() {
     for (const ReferenceTable& table : group.tables) {
       if (table.name == "scene")
         scene = schema_of_table(table, "");
+      else if (group.name == "table")
+        definitions[table.name] = schema_of_table(table, "");
       else
         tables[table.name] = schema_of_table(table, "");
     }
@@ -246,7 +254,7 @@ std::string scene_schema_as_json() {
   // Sizes are optional if a start is given, or zones.
   SceneSchema& sizes = tables.at("spheres").at("allOf").back();
   sizes.at("anyOf").push_back(
-      {{"required", {"start"}}, {"properties", {{"radius", false}, {"diameter", false}}}});
+      {{"required", {"start"}}, {"properties", {{"radius", false}, {"diameter", false}, {"cells", false}}}});
   definitions["solid"]["anyOf"].push_back(refers_to("file"));
   for (const KnownWord& kind : schema::kinds_of_solids())
     definitions["solid"]["anyOf"].push_back(refers_to(fmt::format("container_{}", kind.name)));

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/report/describe.hpp"
 #include "report/chart.hpp"
 #include "report/describe.hpp"
 #include "report/page.hpp"
@@ -98,6 +99,18 @@ void write_headline(Page& page, const Report& report) {
            escaped(report.certificate.statement));
 }
 
+/// What was asked of the cells, beside what there is.
+void write_cells(Page& page, const PackedCells& cells, std::string_view unit) {
+  page.add(
+      "<p>{}.</p>\n<table><tr><th>Share of the cells</th><th>wanted, {}³</th><th>by the radii</th>"
+      "<th>reached</th></tr>\n",
+      escaped(cells_in_words(cells)), escaped(unit));
+  for (const auto& [share, wanted, by_radii, reached] : cells.quantiles)
+    page.add("<tr><td>{:g} %</td><td>{:.4g}</td><td>{:.4g}</td><td>{:.4g}</td></tr>\n", 100 * share, wanted,
+             by_radii, reached);
+  page.raw("</table>\n");
+}
+
 /// The sum by which an amount became a number of spheres, and what is there.
 void write_amount(Page& page, const Packing& packing) {
   const std::vector<double>& radii = packing.spheres.r;
@@ -108,10 +121,13 @@ void write_amount(Page& page, const Packing& packing) {
   const std::string amount = amount_in_words(packing.scene, 2 * mean, least == most, radii.size());
   if (!amount.empty()) page.add("<p>{}.</p>\n", escaped(amount));
   if (const auto mass = mass_of(packing, packing.packing_fraction()))
-    page.add("<p>The spheres weigh {:.6g} kg, of {:.6g} kg/m³ each.</p>\n", *mass,
-             *packing.scene.material_density);
+    page.add("<p>The spheres weigh {:.6g} kg{}.</p>\n", *mass,
+             packing.scene.material_density
+                 ? fmt::format(", of {:.6g} kg/m³ each", *packing.scene.material_density)
+                 : std::string());
   if (const auto& bulk = packing.bulk_density)
     page.add("<p>Bulk density: {:.6g} kg/m³ asked, {:.6g} reached.</p>\n", bulk->asked, bulk->reached);
+  if (packing.cells) write_cells(page, *packing.cells, name_of(packing.scene.unit));
 }
 
 /// What explain said before the run.
@@ -278,6 +294,7 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
   write_scene(page, report, scene);
   write_bed(page, report);
   write_sizes(page, report);
+  write_layers(page, report);
   write_contacts(page, report);
   write_chambers(page, report);
   write_walls(page, report);

@@ -24,6 +24,10 @@ VoxelType type_of(VoxelValues values) {
       return {"uint8", "UInt8", "phase", "|u1"};
     case VoxelValues::labels:
       return {"uint32", "UInt32", "FeatureIds", "<u4"};
+    case VoxelValues::materials:
+      return {"uint8", "UInt8", "material", "|u1"};
+    case VoxelValues::layers:
+      return {"uint8", "UInt8", "layer", "|u1"};
     case VoxelValues::fraction:
       break;
   }
@@ -49,20 +53,24 @@ Vector<3> first_center(const VoxelGrid& grid) {
 
 }  // namespace
 
-std::string meaning_of(VoxelValues values) {
-  switch (values) {
+std::string meaning_of(const VoxelImage& image) {
+  if (!image.meaning.empty()) return image.meaning;
+  switch (image.values) {
     case VoxelValues::binary:
       return "0 pore, 1 sphere, 2 outside the container";
     case VoxelValues::labels:
       return "0 pore, i + 1 sphere i (counted from 0), 4294967295 outside the container";
+    case VoxelValues::materials:
+    case VoxelValues::layers: {
+      std::string text = "0 pore";
+      for (std::size_t k = 0; k < image.names.size(); ++k)
+        text += fmt::format(", {} {}", k + 1, image.names[k]);
+      return text + ", 255 outside the container";
+    }
     case VoxelValues::fraction:
       break;
   }
-  return "volume fraction of spheres, 0 to 1";
-}
-
-std::string meaning_of(const VoxelImage& image) {
-  return image.meaning.empty() ? meaning_of(image.values) : image.meaning;
+  return fmt::format("volume fraction of {}, 0 to 1", image.names.empty() ? "spheres" : image.names.front());
 }
 
 void write_nrrd(OutputFile& file, const VoxelImage& image, const Monitor& monitor) {
@@ -126,7 +134,7 @@ void write_raw(OutputFile& file, const VoxelImage& image, const Monitor& monitor
   if (image.make)
     image.make(image.spheres, image.domain, image.grid, take, monitor);
   else
-    voxelise(image.spheres, image.domain, image.grid, image.values, take, monitor);
+    voxelise(image.spheres, image.domain, image.grid, image.values, take, monitor, image.layers);
 }
 
 std::string raw_header(const VoxelImage& image) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "bernal/voxels/voxels.hpp"
 #include "files/output_file.hpp"
@@ -14,15 +15,15 @@ struct VoxelImage {
   VoxelValues values = VoxelValues::binary;
   std::string unit;   ///< of lengths: "mm"
   std::string title;  ///< one line
-  /// What the values mean; where it is empty, `meaning_of` them.
-  std::string meaning = {};
+  VoxelLayers layers = {};
+  std::vector<std::string> names = {};  ///< what the values of layers stand for, from 1, or their fraction
+  std::string meaning = {};             ///< what the values of `make` mean
   /// What makes the voxels of other images than `voxelise`, of four bytes.
   void (*make)(const Spheres<dynamic>&, const Domain&, const VoxelGrid&, const TakeLayers&,
                const Monitor&) = nullptr;
 };
 
 /// Explanation of the values: "0 pore, 1 sphere, 2 outside the container".
-std::string meaning_of(VoxelValues);
 std::string meaning_of(const VoxelImage&);
 
 // All of these write an array of voxels, x fastest, then y, then z, little-endian, while it is made; see
@@ -33,7 +34,8 @@ std::string meaning_of(const VoxelImage&);
 void write_nrrd(OutputFile&, const VoxelImage&, const Monitor& = {});
 
 /// VTK's ImageData, one value a cell, raw appended data with 64-bit lengths: ParaView, PyVista. The array is
-/// named "phase", "FeatureIds" or "solid_fraction". The origin is the corner of the first voxel.
+/// named "phase", "FeatureIds", "solid_fraction", "material" or "layer". The origin is the corner of the
+/// first voxel.
 void write_vti(OutputFile&, const VoxelImage&, const Monitor& = {});
 
 /// TIFF 6.0, uncompressed, one page a layer of 8 or 32 bits, with the lowest y in the first row; ImageJ's

@@ -87,7 +87,8 @@ constexpr std::uint64_t multiple_of_16(std::uint64_t value) { return (value + 15
 std::string description_of(const VoxelImage& image) {
   const double white = image.values == VoxelValues::binary     ? 2
                        : image.values == VoxelValues::fraction ? 1
-                                                               : static_cast<double>(image.spheres.size());
+                       : image.values == VoxelValues::labels   ? static_cast<double>(image.spheres.size())
+                                                               : static_cast<double>(image.names.size());
   const std::string scale = has_scale_in_tiff(image.grid)
                                 ? fmt::format("unit={}\nspacing={}\n", image.unit, image.grid.spacing[2])
                                 : fmt::format("voxels of {} x {} x {} {}\n", image.grid.spacing[0],

@@ -1,6 +1,7 @@
 #include "bernal/result/read_packing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 #include <span>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "bernal/scene/sphere_classes.hpp"
 #include "files/npy_file.hpp"
 #include "files/put_in_place.hpp"
+#include "result/nest_folder.hpp"
 #include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
 #include "scene/spheres_file.hpp"
@@ -58,6 +60,23 @@ void add_classes(const Scene& scene, const std::filesystem::path& folder, Sphere
   });
 }
 
+/// Those of the cells, where the scene asks for such and the run found them.
+std::vector<double> weights_in(const Scene& scene, const std::filesystem::path& folder, std::size_t spheres) {
+  const std::filesystem::path file = where_it_stands(folder / weights_as_array);
+  std::error_code unknown;
+  std::vector<double> weights;
+  if (!scene.cells || !std::filesystem::exists(file, unknown)) return weights;
+  NpyFile list(file, {}, NpyFile::Takes::any_numbers);
+  if (!list.is_list() || list.rows() != spheres) list.fail("does not have the weight of every sphere's cell");
+  list.read([&](std::size_t, std::size_t first, std::span<const double> values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) list.fail_at(first + i, "is no finite weight");
+      weights.push_back(values[i]);
+    }
+  });
+  return weights;
+}
+
 SpheresFile spheres_in(const Scene& scene, const std::filesystem::path& folder) {
   const std::filesystem::path file = where_it_stands(only_spheres_file_in(folder));
   if (file.filename() != spheres_as_array) return of_the_scene(scene, file, read_csv(file));
@@ -85,9 +104,11 @@ std::filesystem::path spheres_of_result(const std::filesystem::path& folder) {
 
 Scene scene_of_result(const std::filesystem::path& folder) { return scene_in(folder); }
 
-Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder) {
+Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder,
+                                 std::vector<std::uint32_t>* classes) {
   SpheresFile read = spheres_in(scene, folder);
-  classes_in(scene, read);  // refuses those that the scene does not have
+  std::vector<std::uint32_t> known = classes_in(scene, read);  // refuses those that the scene does not have
+  if (classes) *classes = std::move(known);
   return std::move(read.spheres);
 }
 
@@ -119,9 +140,11 @@ Packing read_packing(const std::filesystem::path& folder) {
   SpheresFile read = spheres_in(packing.scene, folder);  // before another result replaces both
   packing.classes = classes_in(packing.scene, read);
   packing.spheres = std::move(read.spheres);
+  packing.weights = weights_in(packing.scene, folder, packing.spheres.size());
   packing.domain = packed_domain_of(packing.scene);
   packing.volume = volume_of(packing.domain);
   packing.seed = packing.scene.seed;
+  read_nest(packing, folder);
   if (const auto& start = packing.scene.start.file;
       start && std::filesystem::equivalent(where_it_stands(*start), spheres_of_result(folder), unknown))
     packing.outcome = Outcome::imported;  // only such a result begins from itself

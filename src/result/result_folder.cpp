@@ -14,6 +14,7 @@
 #include "files/bytes_of_file.hpp"
 #include "files/sha256.hpp"
 #include "report/report.hpp"
+#include "result/nest_folder.hpp"
 #include "scene/given_files.hpp"
 #include "scene/output_table.hpp"
 #include "scene/unpublished.hpp"
@@ -62,7 +63,7 @@ struct NamedFile {
 };
 std::vector<NamedFile> files_and_digests(Scene& scene) {
   std::vector<std::string> digests;
-  for (const MeshFile* mesh : scene.container.meshes()) {
+  for (const MeshFile* mesh : scene.meshes()) {
     const std::size_t files = digests.size() + 1 + mesh->obstacles.size();
     digests.insert(digests.end(), mesh->sha256.begin(), mesh->sha256.end());
     digests.resize(files);
@@ -145,6 +146,9 @@ Scene scene_as_run(const Packing& packing, StagedFolder& staged, const fs::path&
     }
     file = fs::absolute(folder) / name;
   }
+  const std::vector<InsideFiles> insides = files_of_insides(packing);
+  for (std::size_t k = 0; k < insides.size(); ++k)
+    if (!insides[k].scene.empty()) scene.inside[k].scene = fs::absolute(folder) / insides[k].scene;
   return scene;
 }
 

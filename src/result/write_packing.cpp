@@ -7,13 +7,16 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/section.hpp"
+#include "bernal/result/certify_levels.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "core/parallel.hpp"
 #include "files/output_file.hpp"
 #include "files/sha256.hpp"
 #include "report/report.hpp"
 #include "report/write_svg.hpp"
+#include "result/nest_folder.hpp"
 #include "result/result_folder.hpp"
+#include "result/write_layers.hpp"
 #include "result/write_off.hpp"
 #include "result/write_output.hpp"
 #include "result/write_spheres.hpp"
@@ -73,24 +76,61 @@ std::string spheres_file_of(const Packing& packing, const WriteOptions& options)
   return std::string(writes_array(packing, options) ? spheres_as_array : spheres_as_text);
 }
 
-WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
-                             const WriteOptions& options) {
-  const auto go_on = [&] {
-    if (options.all_or_nothing && options.monitor.stop()) throw Cancelled();
-  };
-  std::optional<Interruptible> interruptible;
-  if (options.all_or_nothing) interruptible.emplace(options.monitor);
-  go_on();
-  StagedFolder staged(folder);
+namespace {
+
+void go_on_if(const WriteOptions& options) {
+  if (options.all_or_nothing && options.monitor.stop()) throw Cancelled();
+}
+
+/// What is written of a packing, and of those inside its spheres, into a staged folder.
+struct StagedPacking {
+  Certificate certificate;
+  std::vector<std::string> notes;  // of outputs
+  Manifest manifest;               // by names in the folder of this packing
+};
+
+StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
+                    const WriteOptions& options);
+
+/// Those inside, each in a folder of its own, and nest.json, which says which sphere holds which.
+void stage_insides(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
+                   const WriteOptions& options, StagedPacking& around) {
+  if (packing.inside.empty()) return;
+  const std::vector<InsideFiles> files = files_of_insides(packing);
+  std::vector<std::vector<Certificate>> certificates;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    certificates.emplace_back();
+    for (std::size_t t = 0; t < files[k].packings.size(); ++t) {
+      const std::string& name = files[k].packings[t];
+      const StagedFolder::Below below(staged, name);
+      StagedPacking inside = stage(*packing.inside[k].templates[t], staged, folder / name, options);
+      for (const auto& [file, sha256] : inside.manifest)
+        around.manifest[fmt::format("{}/{}", name, file)] = sha256;
+      certificates.back().push_back(std::move(inside.certificate));
+    }
+  }
+  write_nest(packing, staged);
+  around.certificate = with_levels(std::move(around.certificate), packing, certificates);
+}
+
+StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
+                    const WriteOptions& options) {
+  const auto go_on = [&] { go_on_if(options); };
+  StagedPacking made;
+  const std::size_t before = staged.names().size();
   const bool as_array = writes_array(packing, options);
   const std::filesystem::path spheres = staged.add(spheres_file_of(packing, options));
   write_spheres(spheres, packing, as_array);
   if (as_array && !packing.classes.empty())
-    staged.write(std::string(classes_as_array), classes_as_npy(packing.classes));
+    staged.write(std::string(classes_as_array), as_npy(packing.classes));
+  if (!packing.weights.empty()) staged.write(std::string(weights_as_array), as_npy(packing.weights));
   const std::filesystem::path vtp = as_array ? std::filesystem::path() : staged.add("spheres.vtp");
-  Certificate certificate = certify_written(spheres, packing, options);
+  Certificate& certificate = made.certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);
   go_on();
+  Manifest& manifest = made.manifest;
+  stage_insides(packing, staged, folder, options, made);
+  const SphereLayers layers = as_array ? SphereLayers() : layers_of(packing);
   const std::size_t n = packing.spheres.size();
   const SceneRadii radii = asked_radii_of(packing);
   const Measurements measured =
@@ -113,10 +153,14 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   if (!as_array) {
     OutputFile file(vtp);
     write_vtp(file, packing.spheres, name_of(packing.scene.unit), measured.of_contacts.coordination,
-              packing.classes);
+              packing.classes, columns_of_layers(layers, packing));
     file.close();
+    if (!layers.empty()) {
+      OutputFile table(staged.add(std::string(layers_as_text)));
+      write_layers_csv(table, layers, packing);
+      table.close();
+    }
   }
-  Manifest manifest;
   const std::string scene =
       scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);
   const std::string picture = svg_of(packing.spheres, packing.domain, name_of(packing.scene.unit));
@@ -127,32 +171,44 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   if (!section.empty()) staged.write("section.svg", section);
   if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
     staged.write("container.off", as_off_file(*walls));
-  std::vector<std::string> notes;
   const Monitor bar{options.monitor.on_progress, {}};  // what a cancelled run has is written whole
   const std::size_t own = staged.names().size();
   for (const Output& output : packing.scene.outputs)
-    notes.push_back(write_output(packing, output, staged, bar));
+    made.notes.push_back(write_output(packing, output, staged, bar));
+  const auto name_here = [&](std::size_t k) { return staged.names()[k].substr(staged.below().size()); };
   for (std::size_t k = own; k < staged.names().size(); ++k)
-    add_changeable(staged.names()[k], staged.written(staged.names()[k]), manifest);
-  for (const std::string& name : staged.names()) manifest.try_emplace(name);
+    add_changeable(name_here(k), staged.written(name_here(k)), manifest);
+  for (std::size_t k = before; k < staged.names().size(); ++k) manifest.try_emplace(name_here(k));
   for (const char* name : {"report.json", "report.html"}) manifest[name];
   std::vector<std::string> sources;
   for (const std::filesystem::path& source : sources_of_scene(packing.scene.file))
     sources.push_back(std::filesystem::proximate(source, folder).string());
-  const Report report{packing,  certificate, measured,    radii.all.get(), hash_of(packing.spheres),
-                      manifest, sources,     options.cell};
+  const Report report{packing,  certificate, measured,     radii.all.get(),       hash_of(packing.spheres),
+                      manifest, sources,     options.cell, layer_amounts(packing)};
   staged.write("report.json", json_of(report));
   const std::string view =
       options.view && has_view(packing.spheres.dimension()) ? view_data(packing, &measured) : std::string();
   staged.write("report.html", html_of(report, {picture, section, view}, scene));
+  return made;
+}
+
+}  // namespace
+
+WrittenPacking write_packing(const Packing& packing, const std::filesystem::path& folder,
+                             const WriteOptions& options) {
+  std::optional<Interruptible> interruptible;
+  if (options.all_or_nothing) interruptible.emplace(options.monitor);
+  go_on_if(options);
+  StagedFolder staged(folder);
+  const StagedPacking made = stage(packing, staged, folder, options);
 
   // What the scene names stays where it is.
   std::vector<std::string> replaced = files_of_earlier_result(folder);
   std::erase_if(replaced, [&](const std::string& name) {
-    return manifest.contains(name) && std::ranges::find(staged.names(), name) == staged.names().end();
+    return made.manifest.contains(name) && std::ranges::find(staged.names(), name) == staged.names().end();
   });
-  go_on();
-  return {staged.publish(replaced), certificate, notes};
+  go_on_if(options);
+  return {staged.publish(replaced), made.certificate, made.notes};
 }
 
 }  // namespace bernal

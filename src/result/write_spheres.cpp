@@ -69,11 +69,14 @@ void write_spheres(const std::filesystem::path& file, const Packing& packing, bo
   out.close();
 }
 
-std::string classes_as_npy(const std::vector<std::uint32_t>& classes) {
-  std::string bytes = npy_header(classes.size(), 0);
-  const std::vector<double> values(classes.begin(), classes.end());
+std::string as_npy(const std::vector<double>& values) {
+  std::string bytes = npy_header(values.size(), 0);
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
   return bytes;
+}
+
+std::string as_npy(const std::vector<std::uint32_t>& classes) {
+  return as_npy(std::vector<double>(classes.begin(), classes.end()));
 }
 
 void require_written(const std::filesystem::path& file, const Packing& packing, bool as_array) {

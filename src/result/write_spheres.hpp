@@ -18,7 +18,8 @@ void write_spheres(const std::filesystem::path& file, const Packing& packing, bo
 /// writing. Memory: that of the spheres for text; some megabytes for an array.
 void require_written(const std::filesystem::path& file, const Packing& packing, bool as_array);
 
-/// The bytes of a list of NumPy's.
-std::string classes_as_npy(const std::vector<std::uint32_t>& classes);
+/// The bytes of a list of NumPy's, of doubles.
+std::string as_npy(const std::vector<double>& values);
+std::string as_npy(const std::vector<std::uint32_t>& classes);
 
 }  // namespace bernal

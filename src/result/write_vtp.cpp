@@ -69,7 +69,8 @@ void append_in_space(OutputFile& file, std::size_t dimension, const Component& c
 }  // namespace
 
 void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres, std::string_view unit,
-               std::span<const std::uint32_t> coordination, std::span<const std::uint32_t> classes) {
+               std::span<const std::uint32_t> coordination, std::span<const std::uint32_t> classes,
+               const std::vector<NamedColumn>& more) {
   const std::uint64_t n = spheres.size();
   const std::size_t dimension = spheres.x.size();
   AppendedData data;
@@ -78,6 +79,7 @@ void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres, std::string_vi
   if (!coordination.empty()) point_data += data.tag("Int64", "coordination", n);
   if (!classes.empty()) point_data += data.tag("Int64", "class", n);
   for (std::size_t k = 3; k < dimension; ++k) point_data += data.tag("Float64", fmt::format("x{}", k), n);
+  for (const NamedColumn& column : more) point_data += data.tag("Float64", column.name, n);
   const std::string points = data.tag("Float64", "Points", n, 3);
   const std::string connectivity = data.tag("Int64", "connectivity", n),
                     offsets = data.tag("Int64", "offsets", n);
@@ -103,6 +105,7 @@ void write_vtp(OutputFile& file, const Spheres<dynamic>& spheres, std::string_vi
     for (const std::uint32_t number : numbers) append_raw(file, std::uint64_t{number});
   }
   for (std::size_t k = 3; k < dimension; ++k) append_column(file, spheres.x[k]);
+  for (const NamedColumn& column : more) append_column(file, column.values);
   append_raw(file, 24 * n);
   for (std::size_t i = 0; i < n; ++i)
     append_in_space(file, dimension, [&](std::size_t k) { return spheres.x[k][i]; });

@@ -19,7 +19,7 @@ CheckpointOwner checkpoint_owner(const Scene& scene, std::uint64_t seed) {
     for (const std::string& digest : digests) owner.files += digest + "\n";
     digests.clear();
   };
-  for (MeshFile* mesh : bare.container.meshes()) {
+  for (MeshFile* mesh : bare.meshes()) {
     note(mesh->sha256);
     for (std::filesystem::path* file : mesh->files()) *file = file->filename();
   }

@@ -24,11 +24,14 @@
 #include "run/checkpoint_owner.hpp"
 #include "run/conclude.hpp"
 #include "run/exact_place.hpp"
+#include "run/run_cells.hpp"
+#include "run/run_insides.hpp"
 #include "run/run_largest.hpp"
 #include "run/run_record.hpp"
 #include "run/run_stages.hpp"
 #include "run/run_zones.hpp"
 #include "run/take_coats_off.hpp"
+#include "scene/layers_of_scene.hpp"
 #include "sizes/cut_above.hpp"
 #include "work/counted_container.hpp"
 #include "work/reporter.hpp"
@@ -187,6 +190,8 @@ class Run {
       require_fitting(scene_, plan_.domain, plan_.container, (1 - allowed) * supply->largest());
     }
     if (any_in_bed_) require_long_periods(scene_, plan_.domain, supply->largest());
+    if (!scene_.layers.empty())
+      require_layers_fit(scene_, supply->smallest() - source.coat, supply->largest() - source.coat);
     supply->divide_by(frame_.scale);
     task.frame = frame_;
     task.target.bed.above_ground /= frame_.scale;
@@ -358,8 +363,14 @@ Packing run(const Plan& plan, const RunOptions& options) {
                 "spheres in \"slabs\" are packed into files, by bernal pack, and nobody holds them; leave "
                 "\"slabs\" out to have them all",
                 plan.scene.engine->locations.of("slabs"));
+  if (!plan.insides.empty()) return run_with_insides(plan, options);
+  return run_spheres(plan, options);
+}
+
+Packing run_spheres(const Plan& plan, const RunOptions& options) {
   if (plan.scene.largest) return run_largest(plan, options);
   if (!plan.parts.empty()) return run_zones(plan, options);
+  if (plan.scene.cells) return run_cells(plan, options);
   Packing packing = begin_packing(plan, options.seed, options.threads);
   packing.domain = plan.domain;
   packing.container = plan.container;

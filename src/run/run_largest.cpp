@@ -12,6 +12,7 @@
 #include "bernal/core/text.hpp"
 #include "plan/made_plan.hpp"
 #include "run/begin_packing.hpp"
+#include "run/run_insides.hpp"
 
 namespace bernal {
 namespace {
@@ -49,7 +50,7 @@ class Search {
       if (stopped_ || !fits(*fitting_ * (1 + known_to), many_)) break;
       too_large_.reset();
     }
-    if (!best_) return last_ ? std::move(*last_) : run(build(scene_at(scale)), sub_options(0));
+    if (!best_) return last_ ? std::move(*last_) : run_spheres(build(scene_at(scale)), sub_options(0));
     Packing packing = std::move(*best_);
     packing.outcome = stopped_ ? Outcome::cancelled : Outcome::converged;
     packing.reason = in_words(packing);

@@ -105,6 +105,7 @@ bool is_plain_name(const Value& value) {
 }
 /// Which are checked by themselves.
 bool are_sizes(const Value& value) { return std::holds_alternative<std::vector<SceneSizes>>(value); }
+bool are_tables(const Value& value) { return std::holds_alternative<std::vector<Tables>>(value); }
 
 /// What a value must be, for people and for `accepts`, where that does not depend on the key.
 struct Rule {
@@ -137,6 +138,9 @@ const std::map<Type, Rule> rules = {
     {Type::distribution, {"a positive length or a table { distribution = … }", are_sizes}},
     {Type::parts, {"an array of lengths and tables { distribution = … }", are_sizes, false}},
     {Type::solids, {"an array of files and of tables { kind = … }", is_file, false}},
+    {Type::table, {"a table", are_tables, false}},
+    {Type::tables, {"an array of tables, or one table", are_tables, false}},
+    {Type::table_lists, {"an array of arrays of tables", are_tables, false}},
 };
 
 const Rule& rule_of(const Key& key) {
@@ -159,6 +163,9 @@ std::string expectation(const Key& key, const std::optional<Value>& given) {
   if (key.type == Type::distribution && !key.words.empty())
     return fmt::format("{} or {}", rules.at(key.type).kind, words);
   const Rule& rule = rule_of(key);
+  if (key.table)
+    return fmt::format("{}{} {{ {} = … }}", rule.kind, key.type == Type::length ? " or a table" : "",
+                       key.table().keys.front().name);
   if (given && has_endless_point(*given)) return fmt::format("{}, whose coordinates are finite", rule.kind);
   return given && rule.has_length && is_absurd(*given)
              ? fmt::format("{} from {} to {}", rule.kind, smallest_length, largest_length)
@@ -182,6 +189,7 @@ bool accepts(const Key& key, const Value& value) {
              return std::ranges::find(key.words, name) != key.words.end();
            });
   if (key.type == Type::position && !key.words.empty() && is_word()) return true;
+  if (key.type == Type::length && are_tables(value)) return key.table != nullptr;
   if (key.type != Type::number) return rule_of(key).accepts(value);
   const auto* number = std::get_if<double>(&value);
   return number ? std::isfinite(*number) && key.range.contains(*number) : is_word();

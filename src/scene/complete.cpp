@@ -7,8 +7,11 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "scene/cells_entry.hpp"
 #include "scene/complete_sizes.hpp"
+#include "scene/insides.hpp"
 #include "scene/known_words.hpp"
+#include "scene/layers_of_scene.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
@@ -25,18 +28,18 @@ using schema::Key;
 using schema::Section;
 using schema::Type;
 
-void check_sizes(const SceneSizes& sizes, const std::string& name, const Scene& scene) {
+void check_sizes(const SceneSizes& sizes, const std::string& name, bool are_diameters) {
   const Entry& entry = schema::entry_of(sizes);
   const void* options = schema::options_of(sizes);
   const Section section{name, sizes.locations};
   check(entry, options, section);
   for (const Key& key : entry.keys)
-    if (key.is_diameter && !scene.sizes_are_diameters && key.of(options))
-      section.fail(key.name,
-                   fmt::format("\"{}\" is a diameter; write diameter = {{…}}, not radius", key.name));
+    if (key.is_diameter && !are_diameters && key.of(options))
+      section.fail(key.name, fmt::format("\"{}\" is a diameter; write diameter = {{…}}, not {}", key.name,
+                                         name.substr(0, name.find(' '))));
   if (const auto* mixture = std::get_if<Mixture>(&sizes))
     for (std::size_t i = 0; i < mixture->of.size(); ++i)
-      check_sizes(mixture->of[i], fmt::format("part {} of {}", i + 1, name), scene);
+      check_sizes(mixture->of[i], fmt::format("part {} of {}", i + 1, name), are_diameters);
 }
 
 bool is_start_alone(const Scene& scene) { return scene.start.file && !scene.draws(); }
@@ -289,6 +292,7 @@ void complete_output(Output& output, const Scene& scene) {
   constexpr int resolution_of_images = 256;
   if (output.file.empty()) output.file = table.file;
   require_plain_name(output, table, section);
+  require_layers_of_output(output, scene);
   if (table.keys.find("resolution") && !output.voxel && !output.resolution)
     output.resolution = resolution_of_images;
   if (!output.unit || !table.keys.find("unit")) output.unit = table.unit.value_or(scene.unit);
@@ -343,11 +347,18 @@ void complete(Scene& scene) {
   take_porosity(scene);
   complete_list(scene);
   check_target(scene);
-  if (!is_start_alone(scene) && (scene.draws() || scene.zones.empty()))
+  if (const auto& cells = scene.cells) {
+    schema::require_cells(scene);
+    check_sizes(cells->sizes(), fmt::format("{} of cells", cells->diameter ? "diameter" : "volume"),
+                cells->diameter.has_value());
+  } else if (!is_start_alone(scene) && (scene.draws() || scene.zones.empty())) {
     check_sizes(scene.sizes, scene.sizes_are_diameters ? "diameter of [spheres]" : "radius of [spheres]",
-                scene);
+                scene.sizes_are_diameters);
+  }
+  require_layers(scene);
   complete_stages(scene);
   complete_zones(scene);
+  check_insides(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});

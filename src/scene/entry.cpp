@@ -79,6 +79,24 @@ std::vector<Key> joined(std::vector<Key> keys, std::vector<Key> others) {
   return keys;
 }
 
+std::string name_of_table(const Key& key, std::size_t list, std::size_t item, const std::string& where) {
+  if (key.type == Type::length || key.type == Type::table) return fmt::format("{} of {}", key.name, where);
+  if (key.type == Type::tables) return fmt::format("{} {} of {}", key.table().name, item + 1, where);
+  return fmt::format("{} {} of {} {} of {}", key.table().name, item + 1, key.list_of, list + 1, where);
+}
+
+/// Every table that stands in a key.
+static void check_tables(const Key& key, const std::vector<Tables>& lists, const Section& section) {
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    for (std::size_t k = 0; k < lists[i].items.size(); ++k) {
+      const Entry& entry = *lists[i].of;
+      void* const options = lists[i].items[k].get();
+      const Locations unkept{.whole = section.locations.of(key.name), .keys = {}};
+      check(entry, options,
+            {name_of_table(key, i, k, section.name), entry.locations ? *entry.locations(options) : unkept});
+    }
+}
+
 void check(const Entry& entry, const void* options, const Section& section, bool in_bed) {
   const auto absent = entry.left_out(options, section);
   for (const Key& key : entry.keys) {
@@ -100,6 +118,8 @@ void check(const Entry& entry, const void* options, const Section& section, bool
     if (value && !accepts(key, *value))
       section.refuse(key.name, fmt::format("must be {}, not {}", expectation(key, value),
                                            toml_text(*value).substr(0, 100)));
+    if (value && std::holds_alternative<std::vector<Tables>>(*value))
+      check_tables(key, std::get<std::vector<Tables>>(*value), section);
   }
   if (entry.rule) entry.rule(options, section);
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -18,17 +19,25 @@
 
 namespace bernal::schema {
 
+struct Entry;
+
+/// Tables to the right of an equals sign, each a struct of the entry `of`.
+struct Tables {
+  const Entry* of = nullptr;
+  std::vector<std::shared_ptr<void>> items = {};
+};
+
 /// What a user may write to the right of an equals sign; a distribution is an array of one, and so is a line
-/// of points.
+/// of points, or one array of tables.
 using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
-                           std::vector<std::string>, std::vector<SceneSizes>, Polygon>;
+                           std::vector<std::string>, std::vector<SceneSizes>, Polygon, std::vector<Tables>>;
 
 /// What the value of a key must be. Vectors have three components; arrays have at least one.
 enum class Type {
   flag,          ///< true or false; only true where the range begins at 1
   integer,       ///< within Key::range
   number,        ///< finite, within Key::range; or one of Key::words, if there are any
-  length,        ///< positive, in the scene's unit
+  length,        ///< positive, in the scene's unit; or a table of Key::table, if there is one
   word,          ///< one of Key::words
   file,          ///< a path, relative to the scene's folder
   direction,     ///< [x, y, z], not all zero
@@ -48,6 +57,9 @@ enum class Type {
   distribution,  ///< a length, or a table of one of the distributions
   parts,         ///< array of distributions
   solids,        ///< array of files of closed surfaces and of tables of containers, or one file
+  table,         ///< a table of Key::table
+  tables,        ///< array of tables of Key::table, or one
+  table_lists,   ///< array of arrays of such, of which some may be empty
 };
 
 struct Range {
@@ -152,6 +164,8 @@ struct Key {
   std::string unsaid = {};  ///< the value, as TOML, that is not written; none if empty
   /// Of a number: whose unit may stand with it, in text; and of lengths that are diameters of grains.
   Quantity quantity = Quantity::none;
+  const Entry& (*table)() = nullptr;  ///< of the tables that may stand there
+  std::string_view list_of = {};      ///< what has a list of tables each, where there are several
 
   /// What is written of it, nothing where it goes without saying.
   std::optional<Value> of(const void* options) const;
@@ -239,6 +253,8 @@ struct Entry {
   /// Of a distribution that may stand in a "file": the keys that the file's columns are, one or two.
   std::vector<std::string_view> columns = {};
   std::shared_ptr<const void> defaults = {};  ///< a struct as it is made
+  std::function<std::shared_ptr<void>()> make = {};
+  Locations* (*locations)(void*) = nullptr;  ///< of a struct that keeps them
 
   const Key* find(std::string_view key) const;
   /// The keys that the choices leave out. Throws Error{bad_scene} where two sets are mixed, or none is given
@@ -252,6 +268,9 @@ struct Entry {
 template <class T>
 Entry entry(Entry of) {
   of.defaults = std::make_shared<const T>();
+  of.make = [] { return std::make_shared<T>(); };
+  if constexpr (requires { &T::locations; })
+    of.locations = [](void* options) { return &static_cast<T*>(options)->locations; };
   return of;
 }
 template <class T>
@@ -266,6 +285,75 @@ auto completion(void (*fill_in)(T&, Scene&, const Section&)) {
     fill_in(*static_cast<T*>(options), scene, section);
   };
 }
+
+/// Lists of structs as tables of their entry.
+template <class Item>
+Tables tables_of(const std::vector<Item>& items, const Entry& entry) {
+  Tables all{&entry};
+  for (const Item& item : items) all.items.push_back(std::make_shared<Item>(item));
+  return all;
+}
+template <class Item>
+std::vector<Item> items_of(const Tables& tables) {
+  std::vector<Item> items;
+  for (const std::shared_ptr<void>& item : tables.items)
+    items.push_back(*static_cast<const Item*>(item.get()));
+  return items;
+}
+/// A key of one table.
+template <class T, class Item>
+Key table(std::optional<Item> T::*member, const Entry& (*entry)(), Text name, Text help) {
+  Member way;
+  way.get = [member, entry](const void* of) -> std::optional<Value> {
+    const std::optional<Item>& item = static_cast<const T*>(of)->*member;
+    return item ? std::optional<Value>(std::vector{tables_of(std::vector{*item}, entry())}) : std::nullopt;
+  };
+  way.set = [member](void* of, const Value& value) {
+    static_cast<T*>(of)->*member = items_of<Item>(std::get<std::vector<Tables>>(value).front()).front();
+  };
+  Key made = key(Type::table, std::move(way), name, help);
+  made.table = entry;
+  return made;
+}
+/// A key of tables; and of a list of them for each `list_of`.
+template <class T, class Item>
+Key tables(std::vector<Item> T::*member, const Entry& (*entry)(), Text name, Text help) {
+  Member way;
+  way.get = [member, entry](const void* of) -> std::optional<Value> {
+    const std::vector<Item>& items = static_cast<const T*>(of)->*member;
+    return items.empty() ? std::nullopt : std::optional<Value>(std::vector{tables_of(items, entry())});
+  };
+  way.set = [member](void* of, const Value& value) {
+    static_cast<T*>(of)->*member = items_of<Item>(std::get<std::vector<Tables>>(value).front());
+  };
+  Key made = key(Type::tables, std::move(way), name, help);
+  made.table = entry;
+  return made;
+}
+template <class T, class Item>
+Key table_lists(std::vector<std::vector<Item>> T::*member, const Entry& (*entry)(), Text list_of, Text name,
+                Text help) {
+  Member way;
+  way.get = [member, entry](const void* of) -> std::optional<Value> {
+    std::vector<Tables> lists;
+    for (const std::vector<Item>& items : static_cast<const T*>(of)->*member)
+      lists.push_back(tables_of(items, entry()));
+    return lists.empty() ? std::nullopt : std::optional<Value>(std::move(lists));
+  };
+  way.set = [member](void* of, const Value& value) {
+    auto& lists = static_cast<T*>(of)->*member;
+    lists.clear();
+    for (const Tables& list : std::get<std::vector<Tables>>(value)) lists.push_back(items_of<Item>(list));
+  };
+  Key made = key(Type::table_lists, std::move(way), name, help);
+  made.table = entry;
+  made.list_of = list_of;
+  return made;
+}
+
+/// "layer 2 of [spheres]", "layer 2 of class 1 of radius of [spheres]": what errors call the item-th table of
+/// the list-th list in a key, both from 0.
+std::string name_of_table(const Key&, std::size_t list, std::size_t item, const std::string& where);
 
 /// What a value of this key must be, for people: "a positive length", "a whole number from 1 to 100"; with
 /// its limits where only they refuse the one that was `given`.

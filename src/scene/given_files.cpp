@@ -13,7 +13,7 @@ namespace bernal {
 namespace {
 
 const PolygonSurface* surface_given(const Scene& scene, const std::filesystem::path& name) {
-  for (const MeshFile* mesh : scene.container.meshes())
+  for (const MeshFile* mesh : scene.meshes())
     if (const PolygonSurface* surface = mesh->surface_called(name)) return surface;
   return nullptr;
 }
@@ -93,6 +93,18 @@ std::string as_npy(const Spheres<dynamic>& spheres) {
 
 }  // namespace
 
+std::vector<MeshFile*> Scene::meshes() {
+  std::vector<MeshFile*> all = container.meshes();
+  for (Zone& zone : zones)
+    if (zone.mesh) all.push_back(&*zone.mesh);
+  return all;
+}
+std::vector<const MeshFile*> Scene::meshes() const {
+  std::vector<const MeshFile*> all = container.meshes();
+  for (const Zone& zone : zones)
+    if (zone.mesh) all.push_back(&*zone.mesh);
+  return all;
+}
 std::vector<MeshFile*> SceneContainer::meshes() { return meshes_in<MeshFile>(*this); }
 std::vector<const MeshFile*> SceneContainer::meshes() const { return meshes_in<const MeshFile>(*this); }
 
@@ -109,7 +121,7 @@ std::optional<std::string> content_given(const Scene& scene, const std::filesyst
 
 std::vector<std::filesystem::path*> files_named_in(Scene& scene) {
   std::vector<std::filesystem::path*> files;
-  for (MeshFile* mesh : scene.container.meshes())
+  for (MeshFile* mesh : scene.meshes())
     for (std::filesystem::path* file : mesh->files()) files.push_back(file);
   if (scene.start.file) files.push_back(&*scene.start.file);
   for_each_list(scene, [&](ListedSizes& list) {

@@ -16,8 +16,8 @@ std::optional<std::string> content_given(const Scene&, const std::filesystem::pa
 /// Whether there is such content, at no cost.
 bool is_given(const Scene&, const std::filesystem::path& name);
 
-/// The files that a scene names: those of its container and obstacles, then that of its start, then those
-/// that `put_long_lists_beside` has named.
+/// The files that a scene names: those of its container, obstacles and zones, then that of its start, then
+/// those that `put_long_lists_beside` has named.
 std::vector<std::filesystem::path*> files_named_in(Scene&);
 
 /// Names a file for every list of more than a thousand sizes, which a scene that people may read does not

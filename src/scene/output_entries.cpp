@@ -55,8 +55,17 @@ const std::vector<schema::Key>& output_keys() {
               {1, 10000}),
       word(&Output::values, "values",
            "of voxels: binary (0 pore, 1 sphere, 2 outside the container), labels (0, i + 1 for sphere i, "
-           "4294967295) or fraction (exact volume of spheres in the voxel over its own)",
-           {"binary", "labels", "fraction"}),
+           "4294967295), fraction (exact volume of spheres in the voxel over its own), materials or layers "
+           "(0, "
+           "k for the k-th that the scene's layers name, 255)",
+           {"binary", "labels", "fraction", "materials", "layers"}),
+      key(Type::text, &Output::material, "material",
+          "of an image of values = \"fraction\": only the volume of what is made of this"),
+      key(Type::text, &Output::layer, "layer",
+          "what alone a file of triangles holds: a layer of the spheres by its name, closed by its outer and "
+          "its inner surface; if absent whole spheres"),
+      unless("true", flag(&Output::layers, "layers",
+                          "false: whole spheres, though the scene names layers; else each layer by itself")),
       word(&Output::contact, "contact",
            "what becomes of spheres that touch or nearly do: none; gap (those shrink as far as it takes), "
            "shrink (all do, by one factor), bridge (cylinders join them) or cap (caps are cut off)",
@@ -113,10 +122,16 @@ std::string file_beside(const std::filesystem::path& file, std::string_view endi
   return file.stem().string() + std::string(ending);
 }
 
+bool is_folder(const OutputTable& table, const std::filesystem::path& name) {
+  return table.is_folder && !(std::filesystem::path(table.file).has_extension() && name.has_extension());
+}
+
 std::vector<std::string> files_of(const Output& output) {
   std::vector<std::string> names = {output.file.filename().string()};
-  for (const std::string_view ending : table_of(output).endings)
-    names.push_back(file_beside(output.file, ending));
+  const OutputTable& table = table_of(output);
+  const bool is_alone = !table.alone.empty() && output.file.extension() == table.alone;
+  if (is_alone || is_folder(table, output.file)) return names;
+  for (const std::string_view ending : table.endings) names.push_back(file_beside(output.file, ending));
   return names;
 }
 

@@ -18,9 +18,9 @@ inline double usual_density(const Scene& scene) {
 }
 
 /// The files of a result, all that it ever has.
-inline constexpr std::array<std::string_view, 10> names_of_result = {
-    "scene.toml",  "spheres.csv", "spheres.npy", "classes.npy", "spheres.vtp",
-    "report.json", "report.html", "packing.svg", "section.svg", "container.off"};
+inline constexpr std::array<std::string_view, 12> names_of_result = {
+    "scene.toml",  "spheres.csv", "spheres.npy", "classes.npy", "weights.npy",   "spheres.vtp",
+    "report.json", "report.html", "packing.svg", "section.svg", "container.off", "layers.csv"};
 
 /// A format of other programs as a scene knows it: what it can be told, and what its file is.
 struct OutputTable {
@@ -28,13 +28,14 @@ struct OutputTable {
   std::string_view file;
   /// Of files that may come with it, and take its name: "_radii.npy", ".py".
   std::vector<std::string_view> endings = {};
+  std::string_view alone = {};  ///< the ending of names with which none of them comes
   int least_dimension = 3, most_dimensions = 3;
   std::optional<Unit> unit = {};      ///< that the program expects; none: whatever the scene has
   std::string_view sizes = "radius";  ///< or "diameter": what the file holds
   /// Whether it holds solids of any shape, so that bridges and caps are possible; else spheres or an image of
   /// them, which can only shrink.
   bool solids = false;
-  bool is_folder = false;  ///< what its name is given to
+  bool is_folder = false;  ///< what its name is given to, see `is_folder`
 
   std::string_view name() const { return keys.name; }
 };
@@ -61,6 +62,8 @@ void complete_output(Output& output, const Scene& scene);
 
 /// The name of the file that comes with another: "mine.py" with "mine.npy".
 std::string file_beside(const std::filesystem::path& file, std::string_view ending);
+/// Whether the name is that of a folder. Where the usual name has an ending, one with an ending is a file.
+bool is_folder(const OutputTable&, const std::filesystem::path& name);
 /// All names that an output may write to, its own first.
 std::vector<std::string> files_of(const Output& output);
 

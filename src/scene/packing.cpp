@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "bernal/core/dimension.hpp"
+#include "bernal/scene/layer_amounts.hpp"
 #include "bernal/scene/sphere_classes.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 
 namespace bernal {
 
@@ -14,8 +16,21 @@ std::string_view name_of(Outcome outcome) {
 
 namespace {
 
+/// The mean density of the spheres by volume, where all their layers have one.
+std::optional<double> density_of_layers(const Packing& packing) {
+  double mass = 0, volume = 0;
+  for (const MaterialAmount& material : layer_amounts(packing).materials) {
+    if (!material.mass) return std::nullopt;
+    mass += *material.mass;
+    volume += material.volume;
+  }
+  return volume > 0 ? std::optional(mass / (volume * std::pow(metres_per(packing.scene.unit), 3)))
+                    : std::nullopt;
+}
+
 /// The mean density of the spheres by volume.
 std::optional<double> density_of(const Packing& packing) {
+  if (has_layers(packing.scene) && !packing.scene.material_density) return density_of_layers(packing);
   if (packing.scene.zones.empty()) return packing.scene.material_density;
   const std::vector<SphereClass> classes = classes_of(packing.scene);
   double mass = 0, volume = 0;

@@ -67,8 +67,7 @@ static void archive(Archive& a, Scene& scene) {
   std::vector<std::string> names;
   for (const std::filesystem::path* const name : files_named_in(scene)) names.push_back(name->string());
   std::map<std::filesystem::path, std::shared_ptr<const PolygonSurface>> surfaces;
-  for (const MeshFile* mesh : scene.container.meshes())
-    surfaces.insert(mesh->surfaces.begin(), mesh->surfaces.end());
+  for (const MeshFile* mesh : scene.meshes()) surfaces.insert(mesh->surfaces.begin(), mesh->surfaces.end());
   std::uint64_t count = surfaces.size();
   std::shared_ptr<const Packing> start = scene.start.packing;
   bool are_default = scene.stages_are_default;
@@ -91,7 +90,7 @@ static void archive(Archive& a, Scene& scene) {
       std::shared_ptr<const PolygonSurface> surface;
       a(name);
       archive_shared(a, surface);
-      for (MeshFile* mesh : scene.container.meshes())
+      for (MeshFile* mesh : scene.meshes())
         for (const std::filesystem::path* part : mesh->files())
           if (*part == name) mesh->surfaces.emplace(name, surface);
     }
@@ -109,7 +108,7 @@ static void archive(Archive& a, Scene& scene) {
 static void archive(Archive& a, Packing& p) {
   a(p.spheres, p.classes, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.hints,
     p.expected_of_sizes, p.bulk_density, p.size_scale, p.scene, p.seed, p.threads, p.program, p.outcome,
-    p.reason, p.effects, p.history, p.seconds, p.resumed);
+    p.reason, p.effects, p.history, p.seconds, p.resumed, p.weights, p.cells);
 }
 
 /// Which bernal wrote the bytes, and whether this one may read them, stands in front; of those before 0.2 it

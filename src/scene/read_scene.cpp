@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -10,14 +9,13 @@
 #include <toml++/toml.h>
 
 #include "bernal/core/text.hpp"
-#include "scene/keys_from_columns.hpp"
-#include "scene/known_words.hpp"
+#include "scene/insides.hpp"
 #include "scene/output_table.hpp"
 #include "scene/read_value.hpp"
-#include "scene/said_in_phi.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/scene_of_table.hpp"
 #include "scene/stage_table.hpp"
+#include "scene/table_reader.hpp"
 #include "scene/toml_file.hpp"
 #include "scene/toml_text.hpp"
 #include "scene/zones.hpp"
@@ -26,24 +24,14 @@ namespace bernal {
 namespace {
 
 using schema::Entry;
-using schema::Key;
-using schema::Type;
-using schema::Value;
-using Names = std::vector<std::string_view>;
 
-Names names_of(const auto& entries) {
-  Names names;
-  for (const auto& entry : entries) names.push_back(entry.name);
-  return names;
-}
-
-/// Reads tables of a scene's file into the structs of their entries. Every error is an Error{bad_scene} with
-/// the file, the line and the remedy; `where` is what it calls the table: "[container]".
-class Reader {
+/// Reads a scene's file, table by table.
+class Reader : private TableReader {
  public:
-  explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string()) {}
+  explicit Reader(const std::filesystem::path& file, const std::optional<BallOfSphere>& ball = {})
+      : TableReader(file), ball_(ball) {}
 
-  Scene read(const toml::table& root) {
+  Scene read_all(const toml::table& root) {
     Scene scene;
     scene.file = path_;
     check_tables(root);
@@ -89,10 +77,19 @@ class Reader {
   }
 
   void read_container(const toml::table& root, Scene& scene) const {
+    if (ball_ && !root.contains("container")) {
+      put_into_ball(scene, *ball_);
+      return;
+    }
     const toml::table& table = table_in(root, "container");
     read_solid(table, known_words_in(schema::container_entries()), "[container]", scene.container);
-    if (!scene.container.meshes().empty() && !root.contains("unit"))
-      fail(table.source(), "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
+    if (!scene.container.meshes().empty()) require_unit(root, table);
+    if (ball_) put_into_ball(scene, *ball_);
+  }
+  void require_unit(const toml::table& root, const toml::table& of_mesh) const {
+    if (!root.contains("unit"))
+      fail(of_mesh.source(),
+           "a scene with a mesh needs a unit, such as unit = \"mm\", before its first table");
   }
 
   /// A container or an obstacle; `kinds` may stand there.
@@ -154,9 +151,11 @@ class Reader {
     const toml::table& table = table_in(root, "spheres");
     sizes_are_diameters_ = table.contains("diameter");
     read_own(table, schema::spheres_entry(), "[spheres]", scene);
-    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("start") && !has_zones)
+    if (!table.contains("radius") && !table.contains("diameter") && !table.contains("cells") &&
+        !table.contains("start") && !has_zones)
       fail(table.source(), "[spheres] needs exactly one of \"radius\", \"diameter\"");
     if (scene.start.file) scene.start.file = beside(scene.locations.of("start"), *scene.start.file);
+    for (Inside& inside : scene.inside) inside.scene = beside(inside.locations.of("scene"), inside.scene);
     scene.target.where = at(table.source());
     for (const char* key : {"bed", "top", "height", "bed_layers", "porosity", "bulk_density", "count", "mass",
                             "packing_fraction", "fill"})
@@ -171,6 +170,10 @@ class Reader {
       sizes_are_diameters_ = table->contains("diameter");
       read(*table, schema::zone_entry(), names_of(schema::spheres_of_zone_entry().keys), where, &zone,
            zone.locations);
+      if (zone.mesh) {
+        zone.mesh->file = beside(zone.locations.of("mesh"), zone.mesh->file);
+        require_unit(root, *table);
+      }
       spheres.file = path_;
       read(*table, schema::spheres_of_zone_entry(), names_of(schema::zone_entry().keys), where, &spheres,
            spheres.locations);
@@ -210,176 +213,28 @@ class Reader {
     }
   }
 
-  Location at(const toml::source_region& where) const { return location_of(where, file_); }
-
-  /// Reports the first key, in the order of the file, that is neither one of the entry's nor one of `others`.
-  void check_names(const toml::table& table, const Entry& entry, const Names& others,
-                   std::string_view where) const {
-    Names known = names_of(entry.keys);
-    known.insert(known.end(), others.begin(), others.end());
-    const toml::key* unknown = nullptr;
-    for (const auto& [key, node] : table) {
-      if (std::ranges::find(known, key.str()) != known.end()) continue;
-      if (!unknown || key.source().begin < unknown->source().begin) unknown = &key;
-    }
-    if (!unknown) return;
-    const auto number = [&](std::string_view key) { return table[key].value<double>(); };
-    const std::string instead = schema::instead_of(entry, unknown->str(), number);
-    fail(unknown->source(), "unknown key {} in {}{}", toml_string(unknown->str()), where,
-         instead.empty() ? remedy(unknown->str(), known) : instead);
-  }
-
-  /// Which of several words a table has under `selector`, by its place among them.
-  std::size_t choose(const toml::table& table, std::string_view selector, const std::vector<KnownWord>& known,
-                     std::string_view where) const {
-    const toml::node* node = table.get(selector);
-    const Names names = names_of(known);
-    if (!node)
-      fail(table.source(), "missing \"{}\" in {}; it is one of \"{}\"", selector, where,
-           fmt::join(names, "\", \""));
-    const auto* word = node->as_string();
-    if (!word)
-      fail(node->source(), "\"{}\" in {} must be one of \"{}\", not {}", selector, where,
-           fmt::join(names, "\", \""), written(*node));
-    const auto found = std::ranges::find(names, word->get());
-    if (found == names.end())
-      fail(node->source(), "unknown {} {} in {}{}", selector == "do" ? "stage" : selector, written(*node),
-           where, remedy_of_word(word->get(), known));
-    return static_cast<std::size_t>(found - names.begin());
-  }
-
-  /// The node as a value, whatever the key accepts. Refuses text that is no number with its unit where one is
-  /// meant.
-  std::optional<Value> value_of(const toml::node& node, const Key& key, const std::string& where) const {
-    Measured measured{key.measured(), unit_};
-    if (measured.quantity == Quantity::diameter && !sizes_are_diameters_)
-      measured.quantity = Quantity::length;
-    const bool line = key.type == Type::points;
-    try {
-      if (measured.quantity == Quantity::diameter) in_phi_.note(node, key.name, at(node.source()).line);
-      return line || key.type == Type::lines ? lines_in(node, line, measured)
-             : key.type == Type::names       ? names_in(node, measured)
-                                             : value_in(node, key.type != Type::integer, measured, key.words);
-    } catch (const Error& error) {
-      fail(node.source(), "\"{}\" in {} must be {}, not {}: {}", key.name, where, schema::expectation(key),
-           written(node), error.what());
-    }
-  }
-
-  Value read_value(const toml::node& node, const Key& key, const std::string& where) const {
-    if (key.type == Type::distribution) return std::vector{read_sizes(node, key, where)};
-    if (key.type == Type::parts) return read_parts(node, key, where);
-    const std::optional<Value> value = value_of(node, key, where);
-    if (value && schema::accepts(key, *value)) return *value;
-    if (const auto k = key.type == Type::points ? first_that_is_no_point(node) : std::nullopt)
-      fail(node.as_array()->get(*k)->source(), "point {} of \"{}\" in {} must be two numbers {}, not {}",
-           *k + 1, key.name, where, key.name == "profile" ? "[r, z]" : "[x, y]",
-           written(*node.as_array()->get(*k)));
-    if (key.type == Type::word && node.is_string())
-      fail(node.source(), "\"{}\" in {} is not {}{}", key.name, where, written(node),
-           remedy_of_word(std::get<std::string>(*value), {key.words.begin(), key.words.end()}));
-    fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
-         written(node));
-  }
-
-  /// All keys of an entry that the table has, besides `others`; what is missing, `complete` finds. Refuses
-  /// unknown ones, except at the top of the file, where the tables stand between the keys: there
-  /// `check_names` does.
-  void read(const toml::table& table, const Entry& entry, const Names& others, const std::string& where,
-            void* options, Locations& locations) const {
-    if (&entry != &schema::scene_entry()) check_names(table, entry, others, where);
-    if (locations.whole.file.empty()) locations.whole = at(table.source());
-    for (const Key& key : entry.keys) {
-      const auto found = table.find(key.name);
-      if (found == table.end()) continue;
-      locations.keys[std::string(key.name)] = at(found->first.source());
-      if (!key.member.set && key.type != Type::file) continue;  // see `read_solid`
-      if (key.member.set) {
-        key.member.set(options, read_value(found->second, key, where));
-        continue;
-      }
-      for (const Key& other : entry.keys)
-        if (comes_from_file(entry, other) && table.contains(other.name))
-          fail(found->first.source(), "\"{}\" and \"{}\" in {} exclude each other; give one of them",
-               other.name, key.name, where);
-      take_columns(found->second, entry, where, options, locations);
-    }
-  }
-
-  /// Puts what stands in the file in its place, so that the scene is whole without the file.
-  void take_columns(const toml::node& node, const Entry& entry, const std::string& where, void* options,
-                    Locations& locations) const {
-    const std::string file = std::get<std::string>(read_value(node, *entry.find("file"), where));
-    const Location at_file = locations.of("file");
-    try {
-      for (const Key* key : keys_from_columns(beside(at_file, file), entry, unit_, options))
-        locations.keys[std::string(key->name)] = at_file;
-    } catch (const Error& error) {
-      if (!error.location().file.empty()) throw;
-      throw Error(error.code(), fmt::format("\"file\" in {}: {}", where, error.what()), at_file);
-    }
-  }
-
-  /// A plain length, whose key says what it must be, is a constant distribution.
-  SceneSizes read_sizes(const toml::node& node, const Key& key, const std::string& where) const {
-    SceneSizes sizes;
-    if (const toml::table* table = node.as_table()) {
-      const std::string named = fmt::format("{} of {}", key.name, where);
-      const auto& entries = schema::size_entries();
-      const std::size_t n = choose(*table, "distribution", known_words_in(entries), named);
-      schema::hold(sizes, n);
-      read(*table, entries[n], {"distribution"}, named, schema::options_of(sizes), sizes.locations);
-      return sizes;
-    }
-    if (const auto* word = node.as_string();
-        word && std::ranges::find(key.words, word->get()) != key.words.end()) {
-      sizes = Constant{std::numeric_limits<double>::infinity()};  // as its member takes it
-      sizes.locations.whole = sizes.locations.keys["value"] = at(node.source());
-      return sizes;
-    }
-    const Key length = {.name = key.name, .type = Type::length};
-    const auto value = value_of(node, schema::of_quantity(Quantity::diameter, key), where);
-    if (!value || !schema::accepts(length, *value))
-      fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key, value),
-           written(node));
-    sizes = Constant{std::get<double>(*value)};
-    sizes.locations.whole = sizes.locations.keys["value"] = at(node.source());
-    return sizes;
-  }
-
-  std::vector<SceneSizes> read_parts(const toml::node& node, const Key& key, const std::string& where) const {
-    const toml::array* array = node.as_array();
-    if (!array || array->empty())
-      fail(node.source(), "\"{}\" in {} must be {}, not {}", key.name, where, schema::expectation(key),
-           written(node));
-    std::vector<SceneSizes> parts;
-    for (const toml::node& item : *array) {
-      const std::string name = fmt::format("part {}", parts.size() + 1);
-      parts.push_back(read_sizes(item, {.name = name, .type = Type::distribution}, where));
-    }
-    return parts;
-  }
-
-  template <class... Args>
-  [[noreturn]] void fail(const toml::source_region& where, fmt::format_string<Args...> format,
-                         Args&&... args) const {
-    throw Error(ErrorCode::bad_scene, fmt::format(format, std::forward<Args>(args)...), at(where));
-  }
-
   static constexpr std::array<std::string_view, 7> tables = {"container", "spheres", "zone",  "accuracy",
                                                              "engine",    "stage",   "output"};
 
-  std::filesystem::path path_;
-  std::string file_;
-  Unit unit_ = {};  ///< of the scene, once it is read
-  bool sizes_are_diameters_ = false;
-  mutable SaidInPhi in_phi_;
+  std::optional<BallOfSphere> ball_;  ///< that takes the place of the container
 };
+
+std::string read_text_of_scene(const std::filesystem::path& file) {
+  constexpr std::streamsize largest = 1 << 20;
+  return read_toml_text(file, "scene", largest, "no scene is; is it the mesh?");
+}
 
 }  // namespace
 
+Scene read_scene_inside(const std::filesystem::path& file, const BallOfSphere& ball) {
+  const std::string text = read_text_of_scene(file);
+  if (is_blank(text))
+    throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [spheres]", {file.string()});
+  return Reader(file, ball).read_all(parse_toml(text, file));
+}
+
 Scene scene_of_table(const toml::table& root, const std::filesystem::path& file) {
-  return Reader(file).read(root);
+  return Reader(file).read_all(root);
 }
 
 Scene parse_scene(std::string_view toml, const std::filesystem::path& name) {
@@ -389,9 +244,6 @@ Scene parse_scene(std::string_view toml, const std::filesystem::path& name) {
   return scene_of_table(parse_toml(toml, name), name);
 }
 
-Scene read_scene(const std::filesystem::path& file) {
-  constexpr std::streamsize largest = 1 << 20;
-  return parse_scene(read_toml_text(file, "scene", largest, "no scene is; is it the mesh?"), file);
-}
+Scene read_scene(const std::filesystem::path& file) { return parse_scene(read_text_of_scene(file), file); }
 
 }  // namespace bernal

@@ -57,6 +57,7 @@ std::string table_in_scene(const std::string& group) {
 /// Where a key stands in a scene: "in [container] with kind = "mesh"".
 std::string place_in_scene(const SharedKey& shared) {
   const std::string& group = shared.group->name;
+  if (group == "table") return fmt::format("of a {}", shared.of.front()->name);
   if (shared.group->selector.empty())
     return shared.of.front()->name == group ? "at the top" : fmt::format("in [{}]", shared.of.front()->name);
   return fmt::format("in {} with {}", table_in_scene(group), chosen_by(shared));

@@ -19,7 +19,7 @@ Member sizes(bool diameters) {
   Member member;
   member.get = [diameters](const void* scene) -> std::optional<Value> {
     const auto& of = *static_cast<const Scene*>(scene);
-    if (of.sizes_are_diameters != diameters || !of.draws()) return std::nullopt;
+    if (of.sizes_are_diameters != diameters || !of.draws() || of.cells) return std::nullopt;
     return std::vector<SceneSizes>{of.sizes};
   };
   member.set = [diameters](void* scene, const Value& value) {

@@ -20,6 +20,9 @@ const std::array<const Entry*, 3>& own_entries();
 const Entry& zone_entry();
 const Entry& spheres_of_zone_entry();
 
+/// Of an Inside.
+const Entry& inside_entry();
+
 /// In the order of the alternatives of SceneContainer, SceneSizes and SceneEngine.
 const std::vector<Entry>& container_entries();
 const std::vector<Entry>& size_entries();

@@ -1,5 +1,7 @@
 #include "bernal/scene/scene_reference.hpp"
 
+#include "scene/cells_entry.hpp"
+#include "scene/layer_entry.hpp"
 #include "scene/output_table.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
@@ -12,10 +14,11 @@ using schema::Entry;
 
 /// In the order of schema::Type.
 constexpr std::string_view type_words[] = {
-    "flag",     "integer", "number",  "length", "word",         "file",   "direction", "push",
-    "position", "text",    "names",   "corner", "extents",      "points", "lines",     "coordinates",
-    "lengths",  "shares",  "amounts", "axes",   "distribution", "parts",  "solids"};
-static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::solids) + 1);
+    "flag",  "integer",     "number",  "length", "word",       "file",    "direction",
+    "push",  "position",    "text",    "names",  "corner",     "extents", "points",
+    "lines", "coordinates", "lengths", "shares", "amounts",    "axes",    "distribution",
+    "parts", "solids",      "table",   "tables", "table_lists"};
+static_assert(std::size(type_words) == static_cast<std::size_t>(schema::Type::table_lists) + 1);
 /// In the order of schema::Acts.
 constexpr std::string_view acts_words[] = {"everywhere", "in_bed", "in_box"};
 /// In the order of Quantity.
@@ -34,7 +37,8 @@ ReferenceKey described(const Entry& entry, const schema::Key& key) {
                     .required = key.required,
                     .is_diameter = key.is_diameter,
                     .acts = std::string(acts_words[static_cast<std::size_t>(key.acts)]),
-                    .quantity = std::string(quantity_words[static_cast<std::size_t>(key.measured())])};
+                    .quantity = std::string(quantity_words[static_cast<std::size_t>(key.measured())]),
+                    .table = std::string(key.table ? key.table().name : "")};
   const auto otherwise = key.required ? std::nullopt : key.of(entry.defaults.get());
   if (otherwise && key.type != schema::Type::distribution) made.otherwise = toml_text(*otherwise);
   return made;
@@ -60,7 +64,8 @@ std::vector<ReferenceGroup> scene_reference() {
       {"stage", "do", "Stages: do = \"…\" in [[stage]]", {}},
       {"output", "format", "Files for other programs: format = \"…\" in [[output]]", {}},
       {"engine", "kind", "Other programs that find the places: kind = \"…\" in [engine]", {}},
-      {"zone", "", "Parts of a container with spheres of their own: [[zone]]", {}}};
+      {"zone", "", "Parts of a container with spheres of their own: [[zone]]", {}},
+      {"table", "", "Tables within others: layers = [{ … }]", {}}};
   for (const Entry* entry : schema::own_entries()) groups[0].tables.push_back(described(*entry));
   for (const Entry& entry : schema::container_entries()) groups[1].tables.push_back(described(entry));
   for (const Entry& entry : schema::size_entries()) groups[2].tables.push_back(described(entry));
@@ -71,6 +76,9 @@ std::vector<ReferenceGroup> scene_reference() {
   zone.keys.insert(zone.keys.end(), spheres.keys.begin(), spheres.keys.end());
   zone.choices.insert(zone.choices.end(), spheres.choices.begin(), spheres.choices.end());
   groups[6].tables.push_back(std::move(zone));
+  for (const Entry* entry :
+       {&schema::layer_entry(), &schema::thickness_entry(), &schema::cells_entry(), &schema::inside_entry()})
+    groups[7].tables.push_back(described(*entry));
   return groups;
 }
 

@@ -11,7 +11,9 @@ namespace bernal {
 namespace {
 
 /// Names of files are the strings of these keys, wherever they stand.
-bool names_files(std::string_view key) { return key == "file" || key == "start" || key == "obstacles"; }
+bool names_files(std::string_view key) {
+  return key == "file" || key == "start" || key == "obstacles" || key == "mesh";
+}
 
 void add_named_files(const toml::node& node, bool here, std::vector<std::string>& names) {
   if (const toml::table* table = node.as_table())

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/layer_entry.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/size_kinds.hpp"
 #include "scene/size_rules.hpp"
@@ -78,6 +79,11 @@ void classes_rule(const Classes& of, const Section& section) {
   if (!of.material_densities.empty())
     one_for_each("material_densities", of.material_densities.size(), "values", of.values.size(), section);
   if (!of.names.empty()) one_for_each("names", of.names.size(), "values", of.values.size(), section, "name");
+  if (!of.layers.empty())
+    one_for_each("layers", of.layers.size(), "values", of.values.size(), section, "list");
+  for (std::size_t k = 0; k < of.layers.size(); ++k)
+    layers_rule(of.layers[k], "layers", fmt::format("layers of class {} of {}", k + 1, section.name),
+                section);
 }
 
 void table_rule(const Tabulated& of, const Section& section) {
@@ -195,7 +201,9 @@ const std::vector<Entry>& size_entries() {
                     of_quantity(Quantity::density,
                                 key(Type::shares, &Classes::material_densities, "material_densities",
                                     "of each class in kg/m3, where they are not of one material")),
-                    key(Type::names, &Classes::names, "names", "of each class, for reports")},
+                    key(Type::names, &Classes::names, "names", "of each class, for reports"),
+                    table_lists(&Classes::layers, layer_entry, "class", "layers",
+                                "of the spheres of each class, from the centre out; [] of a class without")},
            .rule = rule(classes_rule)}),
       entry<Uniform>({.name = "uniform",
                       .help = "every size between two limits equally often",

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/cells_entry.hpp"
+#include "scene/layer_entry.hpp"
 #include "scene/scale_entry.hpp"
 #include "scene/spheres_rules.hpp"
 
@@ -47,6 +49,39 @@ Member of_start(M Start::*member) {
   return Member(member).inside(&Scene::start);
 }
 
+/// The file of a zone's surface; the digest is said only of such a zone.
+Member file_of_zone() {
+  Member member;
+  member.get = [](const void* of) -> std::optional<Value> {
+    const auto& mesh = static_cast<const Zone*>(of)->mesh;
+    return mesh ? std::optional<Value>(mesh->file.string()) : std::nullopt;
+  };
+  member.set = [](void* of, const Value& value) {
+    auto& mesh = static_cast<Zone*>(of)->mesh;
+    (mesh ? *mesh : mesh.emplace()).file = std::get<std::string>(value);
+  };
+  return member;
+}
+Member digest_of_zone() {
+  Member member;
+  member.get = [](const void* of) -> std::optional<Value> {
+    const auto& mesh = static_cast<const Zone*>(of)->mesh;
+    return mesh ? value_of(mesh->sha256) : std::nullopt;
+  };
+  member.set = [](void* of, const Value& value) {
+    auto& mesh = static_cast<Zone*>(of)->mesh;
+    take_value((mesh ? *mesh : mesh.emplace()).sha256, value);
+  };
+  return member;
+}
+
+void zone_rule(const Zone& zone, const Section& section) {
+  if (zone.mesh && zone.mesh->file.empty())
+    section.fail("mesh_sha256", "\"mesh_sha256\" is of a \"mesh\", and there is none: leave it out");
+  if (zone.mesh && zone.mesh->sha256.size() > 1)
+    section.refuse("mesh_sha256", "must be one, for the file of \"mesh\"");
+}
+
 void spheres_rule(const Scene& scene, const Section& section) {
   scale_rule(scene, section);
   amounts_rule(scene, section);
@@ -54,15 +89,21 @@ void spheres_rule(const Scene& scene, const Section& section) {
     section.fail("heap_angle",
                  "\"heap_angle\" in [spheres] is of a heap: say top = \"heap\", or leave it out");
   // The one that is read last is all that the scene still holds.
-  if (const auto& keys = section.locations.keys; keys.contains("radius") && keys.contains("diameter"))
-    section.fail("diameter", "\"radius\" and \"diameter\" in [spheres] exclude each other; give one of them");
+  const auto& said = section.locations.keys;
+  for (const auto& [one, other] :
+       {std::pair("diameter", "radius"), {"cells", "radius"}, {"cells", "diameter"}})
+    if (said.contains(one) && said.contains(other))
+      section.fail(one, fmt::format("\"{}\" and \"{}\" in [spheres] exclude each other; give one of them",
+                                    other, one));
   start_rule(scene, section);
+  layers_rule(scene.layers, "layers", "layers in [spheres]", section);
 }
 
 void spheres_of_zone_rule(const Scene& scene, const Section& section) {
   if (scene.largest || (std::holds_alternative<Constant>(scene.sizes) && !scene.draws()))
     section.fail("", fmt::format("{} needs exactly one of \"radius\", \"diameter\"", section.name));
   amounts_rule(scene, section);
+  layers_rule(scene.layers, "layers", "layers in " + section.name, section);
 }
 
 }  // namespace
@@ -112,8 +153,12 @@ const Entry& spheres_entry() {
                                     above(0, largest_length))),
                  key(Type::text, &Scene::material, "material",
                      "what the spheres are made of, by name: a column of the result"),
+                 tables(&Scene::layers, layer_entry, "layers",
+                        "of every sphere, from the centre out; at most one has no thickness, radius or "
+                        "share, and takes what is left"),
                  size_key(false),
                  size_key(true),
+                 cells_key(),
                  scale_key(),
                  of_quantity(Quantity::length,
                              number(&Scene::gap, "gap",
@@ -140,7 +185,9 @@ const Entry& spheres_entry() {
                      "the folder's box, else the size of the container"),
                  names(of_start(&Start::sha256), "start_sha256",
                        "of the start's file, as sha256sum prints it: other bytes are refused; a result "
-                       "names it")},
+                       "names it"),
+                 tables(&Scene::inside, inside_entry, "inside",
+                        "packings in the innermost layer of the spheres of a class")},
         .choices = {{{"count"},
                      {"packing_fraction"},
                      {"fill"},
@@ -151,11 +198,29 @@ const Entry& spheres_entry() {
                      {"mass", "packing_fraction"},
                      {}},
                     {{"bed"}, {"porosity"}, {"bulk_density"}, {}},
-                    {{"radius"}, {"diameter"}}},
+                    {{"radius"}, {"diameter"}, {"cells"}}},
         .rule = rule(spheres_rule)};
     of.keys[1].words = {"predicted"};
     return entry<Scene>(std::move(of));
   }();
+  return made;
+}
+
+const Entry& inside_entry() {
+  static const Entry made = entry<Inside>(
+      {.name = "inside",
+       .help = "a packing in the innermost layer of every sphere of a class",
+       .keys = {required(key(Type::file, &Inside::scene, "scene",
+                             "of what lies inside: its container is the ball that the layer is, and may be "
+                             "left out there")),
+                key(Type::text, &Inside::of_class, "class",
+                    "whose spheres are filled; may be absent where there is only one"),
+                key(Type::text, &Inside::layer, "layer",
+                    "the innermost of these spheres; may be absent where they have no layers"),
+                integer(&Inside::templates, "templates",
+                        "so many packings, each in many spheres, turned at random; if absent every sphere "
+                        "has its own",
+                        {1, 1e6})}});
   return made;
 }
 
@@ -176,8 +241,15 @@ const Entry& zone_entry() {
                       "of the container's file, by name or by number from 1, or several of them"),
                 integer(&Zone::chamber, "chamber",
                         "of a mesh of several closed spaces, by number from 1, which is the largest",
-                        {1, 1e6})},
-       .choices = {{{"place"}, {"solid"}, {"chamber"}, {}}}});
+                        {1, 1e6}),
+                key(Type::file, file_of_zone(), "mesh",
+                    "a CAD file: a closed surface within the container, in the unit of the container's file "
+                    "or of the scene where its format carries none"),
+                names(digest_of_zone(), "mesh_sha256",
+                      "of the file of mesh, as sha256sum prints it: other bytes are refused; a result names "
+                      "it")},
+       .choices = {{{"place"}, {"solid"}, {"chamber"}, {"mesh"}, {}}},
+       .rule = rule(zone_rule)});
   return made;
 }
 
@@ -185,9 +257,9 @@ const Entry& spheres_of_zone_entry() {
   static const Entry made = [] {
     Entry of = spheres_entry();
     of.name = "zone";
-    constexpr std::string_view of_all[] = {"gap",       "wall_gap", "start",        "start_unit",
-                                           "start_box", "bed",      "start_sha256", "bed_layers",
-                                           "height",    "top",      "scale",        "heap_angle"};
+    constexpr std::string_view of_all[] = {"gap",   "wall_gap",     "start",      "start_unit", "start_box",
+                                           "bed",   "start_sha256", "bed_layers", "height",     "top",
+                                           "scale", "heap_angle",   "cells",      "inside"};
     std::erase_if(of.keys,
                   [&](const Key& key) { return std::ranges::find(of_all, key.name) != std::end(of_all); });
     for (Key& key : of.keys)

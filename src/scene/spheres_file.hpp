@@ -9,4 +9,7 @@ inline constexpr std::string_view spheres_as_text = "spheres.csv", spheres_as_ar
 /// Beside the latter, the class of each sphere, where the scene tells spheres apart.
 inline constexpr std::string_view classes_as_array = "classes.npy";
 
+/// The weight of each cell, where the scene asks for volumes of cells.
+inline constexpr std::string_view weights_as_array = "weights.npy";
+
 }  // namespace bernal

@@ -64,7 +64,7 @@ fs::path only_spheres_file_in(const fs::path& folder) {
 Scene scene_in(const fs::path& folder) {
   const fs::path file = folder / "scene.toml", there = where_it_stands(file);
   Scene scene = there == file ? read_scene(file) : parse_scene(bytes_of_file(there), file);
-  for (MeshFile* mesh : scene.container.meshes())
+  for (MeshFile* mesh : scene.meshes())
     for (fs::path* part : mesh->files())
       if (part->lexically_normal() == (folder / part->filename()).lexically_normal())
         *part = where_it_stands(*part);

@@ -30,6 +30,16 @@ static std::string text_of(const SceneSizes& sizes) {
                      fmt::join(assignments(entry, schema::options_of(sizes)), ", "));
 }
 
+/// An inline table.
+static std::string text_of(const schema::Entry& entry, const void* options) {
+  return fmt::format("{{ {} }}", fmt::join(assignments(entry, options), ", "));
+}
+static std::string text_of(const schema::Tables& tables) {
+  std::vector<std::string> all;
+  for (const std::shared_ptr<void>& item : tables.items) all.push_back(text_of(*tables.of, item.get()));
+  return fmt::format("[{}]", fmt::join(all, ", "));
+}
+
 /// "[[x, y], [x, y]]"
 static std::string text_of(const std::vector<Vector<2>>& loop) {
   std::vector<std::string> points;
@@ -61,6 +71,11 @@ std::string toml_text(const schema::Value& value) {
       for (const auto& loop : v.loops) loops.push_back(text_of(loop));
       return fmt::format("[{}]", fmt::join(loops, ", "));
     }
+    std::string operator()(const std::vector<schema::Tables>& v) const {
+      std::vector<std::string> lists;
+      for (const schema::Tables& list : v) lists.push_back(text_of(list));
+      return fmt::format("[{}]", fmt::join(lists, ", "));
+    }
   } write;
   return std::visit(write, value);
 }
@@ -69,10 +84,14 @@ std::vector<std::string> assignments(const schema::Entry& entry, const void* opt
   std::vector<std::string> out;
   for (const auto& [key, value] : entry.said(options)) {
     if (!key->acts_here(in_bed)) continue;
+    const auto* tables = std::get_if<std::vector<schema::Tables>>(&value);
     const std::string text =
         key->type == schema::Type::distribution ? text_of(std::get<std::vector<SceneSizes>>(value).front())
         : key->type == schema::Type::points     ? text_of(std::get<Polygon>(value).loops.front())
-                                                : toml_text(value);
+        : key->type == schema::Type::tables     ? text_of(tables->front())
+        : tables && (key->type == schema::Type::length || key->type == schema::Type::table)
+            ? text_of(*tables->front().of, tables->front().items.front().get())
+            : toml_text(value);
     out.push_back(fmt::format("{} = {}", key->name, text));
   }
   return out;
@@ -121,6 +140,7 @@ std::string in_words(const schema::Key& key, const schema::Value& value) {
     for (const SceneSizes& part : *parts) all.push_back(fmt::format("({})", sizes_in_words(part)));
     return fmt::format("of {}", fmt::join(all, " and "));
   }
+  if (std::holds_alternative<std::vector<schema::Tables>>(value)) return fmt::format("with {}", key.name);
   return fmt::format("{} {}", key.name, toml_text(value));
 }
 
@@ -144,6 +164,8 @@ std::string scene_as_toml(const Scene& scene, const std::filesystem::path& folde
   if (!folder.empty())
     for (std::filesystem::path* const file : files_named_in(named))
       if (!is_given(scene, *file)) *file = std::filesystem::proximate(*file, folder);
+  if (!folder.empty())
+    for (Inside& inside : named.inside) inside.scene = std::filesystem::proximate(inside.scene, folder);
   std::string out = fmt::format("{}\n{}\n[spheres]\n{}\n[accuracy]\n{}", lines(schema::scene_entry(), &scene),
                                 container_as_toml(named.container), lines(schema::spheres_entry(), &named),
                                 lines(schema::accuracy_entry(), &scene));

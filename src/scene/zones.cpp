@@ -77,7 +77,13 @@ void require_plain_scene(const Scene& scene) {
                 "\"scale\" in [spheres] is of the sizes there, and there are none: leave it out",
                 scene.locations.of("scale"));
   const auto refuse_names = [](const SceneSizes& sizes) {
-    if (const auto* classes = std::get_if<Classes>(&sizes); classes && !classes->names.empty())
+    const auto* classes = std::get_if<Classes>(&sizes);
+    if (classes && !classes->layers.empty())
+      throw Error(ErrorCode::bad_scene,
+                  "\"layers\" of classes and [[zone]] exclude each other: give the \"layers\" of all spheres "
+                  "of a zone, in [[zone]]",
+                  sizes.locations.of("layers"));
+    if (classes && !classes->names.empty())
       throw Error(
           ErrorCode::bad_scene,
           "\"names\" of classes and [[zone]] exclude each other: the zones are what a result tells apart",
@@ -123,6 +129,7 @@ Scene scene_of_rest(const Scene& whole) {
   Scene of = whole;
   of.zones.clear();
   of.outputs.clear();
+  of.inside.clear();
   return of;
 }
 
@@ -143,11 +150,12 @@ static void require_zones(const Scene& scene) {
       fail(zone, "solid",
            "where a zone is a \"solid\" each solid is a zone: leave \"diameter\" and \"radius\" out of "
            "[spheres], and give the others a [[zone]]");
-    const bool has_place = !zone.place.empty() || !zone.solids.empty() || zone.chamber;
+    const bool has_walls = !zone.solids.empty() || zone.chamber || zone.mesh;
+    const bool has_place = !zone.place.empty() || has_walls;
     if (!has_place && !laid)
       fail(zone, "",
-           fmt::format("{} needs exactly one of \"place\", \"solid\", \"chamber\"; only spheres that settle, "
-                       "with bed = \"poured\" in [spheres], lie on others without",
+           fmt::format("{} needs exactly one of \"place\", \"solid\", \"chamber\", \"mesh\"; only spheres "
+                       "that settle, with bed = \"poured\" in [spheres], lie on others without",
                        section_name_of_zone(k + 1)));
     if (laid && (target.fill || target.packing_fraction))
       fail(zone, target.fill ? "fill" : "packing_fraction",
@@ -159,11 +167,12 @@ static void require_zones(const Scene& scene) {
                        section_name_of_zone(k + 1)));
     if (laid && !zone.place.empty() && has_amount)
       fail(zone, "place", "a layer of a bed ends by its \"place\" or by its amount; leave one of them out");
-    if (!zone.place.empty() && !laid && scene.gap > 2 * scene.wall_gap)
-      fail(zone, "place",
-           fmt::format("spheres on both sides of a plane would be nearer than \"gap\": give a \"wall_gap\" "
-                       "of {:g}, half of it, in [spheres]",
-                       scene.gap / 2));
+    if ((zone.mesh || (!zone.place.empty() && !laid)) && scene.gap > 2 * scene.wall_gap)
+      fail(
+          zone, zone.mesh ? "mesh" : "place",
+          fmt::format("spheres on both sides of its border would be nearer than \"gap\": give a \"wall_gap\" "
+                      "of {:g}, half of it, in [spheres]",
+                      scene.gap / 2));
   }
 }
 
@@ -190,23 +199,27 @@ std::vector<SphereClass> classes_of(const Scene& scene) {
     auto [material, density] = material_in(scene, scene.zones[k].spheres);
     classes.push_back({name_of_zone(scene, k), std::move(material), density});
   }
-  if (!scene.draws()) return classes;
+  const bool has_layers = scene.zones.empty() && !scene.layers.empty();
+  if (!scene.draws() && !has_layers) return classes;
   if (const auto* sizes = std::get_if<Classes>(&scene.sizes);
-      scene.zones.empty() && sizes && !sizes->names.empty()) {
+      scene.zones.empty() && sizes && !(sizes->names.empty() && sizes->layers.empty())) {
     const schema::Key plain{.name = "name", .type = schema::Type::text};
     for (std::size_t k = 0; k < sizes->values.size(); ++k) {
-      const std::string& name = sizes->names[k];
+      const std::string name = sizes->names.empty() ? std::string() : sizes->names[k];
       const bool is_own = schema::accepts(plain, name) && std::ranges::count(sizes->names, name) == 1;
       const std::string word = is_own ? name : fmt::format("class {}", k + 1);
       classes.push_back(
           {word, word,
            sizes->material_densities.empty() ? scene.material_density : sizes->material_densities[k]});
     }
-  } else if (!scene.zones.empty() || !scene.material.empty()) {
+  } else if (!scene.zones.empty() || !scene.material.empty() || has_layers) {
     const bool is_plain =
         std::ranges::none_of(classes, [&](const SphereClass& other) { return other.name == scene.material; });
-    classes.push_back({scene.material.empty() || !is_plain ? "rest" : scene.material, scene.material,
-                       scene.material_density});
+    const bool is_alone = scene.zones.empty() && scene.material.empty();
+    classes.push_back({is_alone                              ? "spheres"
+                       : scene.material.empty() || !is_plain ? "rest"
+                                                             : scene.material,
+                       scene.material, scene.material_density});
   }
   return classes;
 }

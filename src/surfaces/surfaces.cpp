@@ -41,6 +41,14 @@ Spheres<dynamic> wrapped(Spheres<dynamic> spheres, const Domain& domain) {
   return spheres;
 }
 
+/// The first of them.
+Spheres<dynamic> first_of(Spheres<dynamic> spheres, std::size_t count) {
+  if (count == spheres.size()) return spheres;
+  for (std::vector<double>& column : spheres.x) column.resize(count);
+  spheres.r.resize(count);
+  return spheres;
+}
+
 /// The balls that contain the written surfaces.
 Spheres<dynamic> smaller_by(Spheres<dynamic> spheres, double inset) {
   for (double& r : spheres.r) r -= inset;
@@ -84,8 +92,9 @@ bool may_be_covered(std::int8_t face) { return face >= 0; }
 }  // namespace
 
 Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double deflection,
-                   SurfaceChoice choice, const Monitor& monitor)
+                   SurfaceChoice choice, const Monitor& monitor, const Nested& nested)
     : choice_(choice),
+      nested_(nested),
       deflection_(deflection),
       walls_(choice == SurfaceChoice::spheres
                  ? WallSurface()
@@ -98,7 +107,8 @@ Surfaces::Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double
   bool overlaps = false;
   if (has_spheres()) {
     measures_ = spheres_.measure();
-    const Certificate pairs = certify(smaller_by(spheres, spheres_.inset()), domain, {.monitor = monitor});
+    const Certificate pairs =
+        certify(smaller_by(first_of(spheres, nested.outer), spheres_.inset()), domain, {.monitor = monitor});
     if (pairs.cancelled) throw Cancelled();
     overlaps = pairs.overlapping_pairs > 0;
     proof_ =
@@ -178,10 +188,10 @@ void Surfaces::visit_spheres(const std::vector<std::uint32_t>* order, const Visi
     next = static_cast<std::uint32_t>(container_.vertices.size());
   }
   if (!has_spheres()) return;
-  const bool inward = choice_ == SurfaceChoice::pores;
   std::vector<FloatPoint> vertices;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> number;
+  const bool is_pore = choice_ == SurfaceChoice::pores;
   const std::size_t count = order ? order->size() : spheres_.spheres();
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t i = order ? (*order)[n] : n;
@@ -189,12 +199,13 @@ void Surfaces::visit_spheres(const std::vector<std::uint32_t>* order, const Visi
       if (monitor_.stop()) throw Cancelled();
       monitor_.report({"triangles", static_cast<double>(n) / static_cast<double>(count), {}});
     }
+    const bool inward = is_pore || (nested_.are_holes && i >= nested_.outer);
     spheres_.visit(i, [&](const FloatSurface& surface) {
       vertices.clear();
       triangles.clear();
       number.assign(surface.vertices.size(), ~0U);
       for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        if (inward && may_be_covered(surface.faces[t])) continue;
+        if (is_pore && may_be_covered(surface.faces[t])) continue;
         Triangle triangle = surface.triangles[t];
         if (inward) std::swap(triangle[1], triangle[2]);
         for (std::uint32_t& v : triangle) {

@@ -27,7 +27,17 @@ class Surfaces {
   /// Lengths in the file's unit. Throws Error{bad_argument} as SphereSurfaces and `wall_surface` do, and if
   /// the pore space is requested and spheres overlap at the end of a period.
   Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double deflection, SurfaceChoice choice,
-           const Monitor& monitor);
+           const Monitor& monitor)
+      : Surfaces(spheres, domain, deflection, choice, monitor, {spheres.size(), false}) {}
+
+  /// Of the spheres, those that lie within others: the first `outer` do not. Precondition: the choice is
+  /// `spheres`, if there are any.
+  struct Nested {
+    std::size_t outer;
+    bool are_holes;  ///< their triangles face inward
+  };
+  Surfaces(const Spheres<dynamic>& spheres, const Domain& domain, double deflection, SurfaceChoice choice,
+           const Monitor& monitor, const Nested& nested);
 
   using Visit = std::function<void(const SurfacePart&)>;
   /// Calls visit for the container, if requested, and then for the spheres, all or in the given order. The
@@ -59,6 +69,7 @@ class Surfaces {
   void visit_spheres(const std::vector<std::uint32_t>* order, const Visit& visit) const;
 
   SurfaceChoice choice_;
+  Nested nested_;
   double deflection_;
   WallSurface walls_;
   double shift_ = 0;

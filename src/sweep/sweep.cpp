@@ -124,7 +124,7 @@ std::string Sweep::Read::hash_of(const Scene& whole) {
     of = digest_of_part(where_it_stands(spheres_file_in(of))) +
          digest_of_part(where_it_stands(of / "scene.toml"));
   };
-  for (MeshFile* mesh : named.container.meshes())
+  for (MeshFile* mesh : named.meshes())
     for (fs::path* part : mesh->files()) by_bytes(*part);
   if (named.start.file) by_bytes(*named.start.file);
   return digest_of("bernal cell 1\n" + scene_as_toml(named));

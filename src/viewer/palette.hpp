@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 #include <fmt/format.h>
@@ -37,6 +38,19 @@ inline Colour size_colour(double t) {
   const double scaled = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(scaled), stops.size() - 2);
   return mix(stops[k], stops[k + 1], scaled - static_cast<double>(k));
+}
+
+/// Colours of what differs in kind, such as materials, apart for colour-blind eyes too: Paul Tol's "bright"
+/// (2021), again after seven.
+inline Colour kind_colour(std::size_t k) {
+  constexpr std::array<Colour, 7> colours = {{{0.267, 0.467, 0.667},
+                                              {0.933, 0.400, 0.467},
+                                              {0.800, 0.733, 0.267},
+                                              {0.133, 0.533, 0.200},
+                                              {0.400, 0.800, 0.933},
+                                              {0.667, 0.200, 0.467},
+                                              {0.733, 0.733, 0.733}}};
+  return colours[k % colours.size()];
 }
 
 }  // namespace bernal

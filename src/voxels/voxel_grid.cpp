@@ -54,7 +54,9 @@ VoxelGrid grid_of_edge(const Domain& domain, double edge) {
 
 }  // namespace
 
-int bytes_per_voxel(VoxelValues values) { return values == VoxelValues::binary ? 1 : 4; }
+int bytes_per_voxel(VoxelValues values) {
+  return values == VoxelValues::labels || values == VoxelValues::fraction ? 4 : 1;
+}
 
 bool VoxelGrid::has_cubes() const {
   for (int k = 1; k < dimension; ++k)

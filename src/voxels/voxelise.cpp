@@ -28,11 +28,12 @@ constexpr std::size_t slab_bytes_of_sums = std::size_t{512} << 20;
 /// their tiles are larger.
 constexpr Index tile_bytes = Index{1} << 20, tile_bytes_of_sums = Index{4} << 20;
 
-/// An image of a sphere.
+/// An image of a sphere, or of a ball within it.
 struct Ball {
   Vector<3> center;
   double radius;
-  std::uint32_t sphere;
+  double weight;        ///< in a sum of fractions
+  std::uint32_t value;  ///< of a voxel
 };
 
 /// Voxels [first, last) along an axis.
@@ -46,19 +47,15 @@ struct Tile {
   Span y, z;
 };
 
-/// The value of a voxel.
-template <class Voxel>
-struct Names {
-  static constexpr Voxel outside = sizeof(Voxel) == 1 ? 2 : static_cast<Voxel>(~0u);
-  static Voxel of(const Ball& ball) {
-    return sizeof(Voxel) == 1 ? Voxel{1} : static_cast<Voxel>(ball.sphere + 1);
-  }
-};
-
 class Image {
  public:
-  Image(const Spheres<dynamic>& spheres, const Domain& domain, const VoxelGrid& grid)
-      : spheres_(spheres), grid_(grid), periods_(boundary_in_space(domain).edges) {
+  Image(const Spheres<dynamic>& spheres, const Domain& domain, const VoxelGrid& grid, VoxelValues values,
+        const VoxelLayers& layers)
+      : spheres_(spheres),
+        grid_(grid),
+        periods_(boundary_in_space(domain).edges),
+        values_(values),
+        layers_(layers) {
     if (has_walls(domain)) inside_.emplace(domain, grid);
   }
 
@@ -112,10 +109,34 @@ class Image {
       for (shift[2] = first[2]; shift[2] <= last[2]; ++shift[2])
         for (shift[1] = first[1]; shift[1] <= last[1]; ++shift[1])
           for (shift[0] = first[0]; shift[0] <= last[0]; ++shift[0])
-            balls.push_back(
-                {center + Vector<3>(shift.cwiseProduct(periods_)), r, static_cast<std::uint32_t>(i)});
+            add_balls(center + Vector<3>(shift.cwiseProduct(periods_)), i, balls);
     }
     return balls;
+  }
+
+  /// One for the sphere, or one for each of its layers, from the centre out.
+  void add_balls(const Vector<3>& center, std::size_t i, std::vector<Ball>& balls) const {
+    const bool has_layers =
+        !layers_.first.empty() && values_ != VoxelValues::binary && values_ != VoxelValues::labels;
+    if (!has_layers) {
+      balls.push_back(
+          {center, spheres_.r[i], 1, values_ == VoxelValues::labels ? static_cast<std::uint32_t>(i + 1) : 1});
+      return;
+    }
+    for (std::size_t k = layers_.first[i]; k < layers_.first[i + 1]; ++k) {
+      const std::uint8_t value = layers_.value[k],
+                         next = k + 1 < layers_.first[i + 1] ? layers_.value[k + 1] : 0;
+      const double weight = static_cast<double>(value > 0) - static_cast<double>(next > 0);
+      if (values_ == VoxelValues::fraction && weight == 0) continue;
+      balls.push_back({center, layers_.outer[k], weight, value});
+    }
+  }
+
+  /// The value of a voxel outside the container.
+  template <class T>
+  T outside() const {
+    constexpr std::uint8_t of_binary = 2;
+    return values_ == VoxelValues::binary ? T{of_binary} : static_cast<T>(~T{0});
   }
 
   /// Tiles of about `rows` rows.
@@ -135,7 +156,7 @@ class Image {
   void fill_walls(Span z, T* layers) const {
     parallel_for(static_cast<std::size_t>(z.last - z.first), [&](std::size_t k) {
       T* layer = layers + static_cast<Index>(k) * layer_length();
-      std::fill_n(layer, layer_length(), inside_ ? Names<T>::outside : T{0});
+      std::fill_n(layer, layer_length(), inside_ ? outside<T>() : T{0});
       if (!inside_) return;
       std::vector<InsideRun> runs;
       inside_->layer(z.first + static_cast<Index>(k), runs);
@@ -165,7 +186,7 @@ class Image {
   template <class T>
   void label_tile(const Tile& tile, Index first_layer, const std::vector<Ball>& balls, T* layers) const {
     const double low = grid_.plane(1, tile.y.first), high = grid_.plane(1, tile.y.last);
-    // Backwards, so that the first of several spheres is written last.
+    // Backwards, so that the first of several spheres is written last, and of its layers the innermost.
     for (auto ball = balls.rbegin(); ball != balls.rend(); ++ball) {
       const double r = ball->radius, squared = r * r, x = ball->center[0], y = ball->center[1],
                    z = ball->center[2];
@@ -181,7 +202,7 @@ class Image {
           const Span is = run_of(0, {0, grid_.count[0]}, x, std::sqrt(squared - yz),
                                  [&](double at) { return (at - x) * (at - x) + yz <= squared; });
           std::fill(layer + j * row_length() + is.first, layer + j * row_length() + is.last,
-                    Names<T>::of(*ball));
+                    static_cast<T>(ball->value));
         }
       }
     }
@@ -217,21 +238,23 @@ class Image {
       double* to = &sums[static_cast<std::size_t>((ks.first - tile.z.first) * layer +
                                                   (js.first - tile.y.first) * stride + is.first)];
       if (flat) {
-        cells.add_disc(r * r / grid_.measure(), 1, to, stride);
+        cells.add_disc(ball.weight * r * r / grid_.measure(), ball.weight, to, stride);
       } else {
-        cells.add(r * r * r / grid_.measure(), 1, to, stride, layer);
+        cells.add(ball.weight * r * r * r / grid_.measure(), ball.weight, to, stride, layer);
       }
     }
     for (Index k = 0; k < depth; ++k) {
       const double* from = &sums[static_cast<std::size_t>(k * layer)];
       float* to = layers + (tile.z.first - first_layer + k) * layer_length() + tile.y.first * stride;
-      for (Index i = 0; i < layer; ++i) to[i] = static_cast<float>(std::min(from[i], 1.0));
+      for (Index i = 0; i < layer; ++i) to[i] = static_cast<float>(std::clamp(from[i], 0.0, 1.0));
     }
   }
 
   const Spheres<dynamic>& spheres_;
   const VoxelGrid& grid_;
   Vector<3> periods_;
+  VoxelValues values_;
+  const VoxelLayers& layers_;
   std::optional<VoxelsInside> inside_;
 };
 
@@ -275,13 +298,15 @@ void take_slabs(const Image& image, const VoxelGrid& grid, const TakeLayers& tak
 }  // namespace
 
 void voxelise(const Spheres<dynamic>& spheres, const Domain& domain, const VoxelGrid& grid,
-              VoxelValues values, const TakeLayers& take, const Monitor& monitor) {
+              VoxelValues values, const TakeLayers& take, const Monitor& monitor, const VoxelLayers& layers) {
   if (spheres.size() >= 0xFFFFFFFF)
     throw Error(ErrorCode::bad_argument, "an image has labels for no more than 4,294,967,294 spheres");
   require_few_images(spheres, domain);
-  const Image image(spheres, domain, grid);
+  const Image image(spheres, domain, grid, values, layers);
   switch (values) {
     case VoxelValues::binary:
+    case VoxelValues::materials:
+    case VoxelValues::layers:
       return take_slabs<std::uint8_t>(image, grid, take, monitor);
     case VoxelValues::labels:
       return take_slabs<std::uint32_t>(image, grid, take, monitor);

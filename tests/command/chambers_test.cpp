@@ -27,6 +27,10 @@ TEST(ChambersOfAFile, AreCountedForARadius) {
   EXPECT_EQ(wide["chambers"]["list"].size(), 1u);
   EXPECT_TRUE(nlohmann::json::parse(bernal({"inspect", mesh, "--json"}).out)["chambers"].is_null());
   expect_refused_in_one_line(bernal({"inspect", mesh, "--radius", "-1"}), {"--radius", "above 0"});
+  expect_refused_in_one_line(bernal({"inspect", mesh, "--radius", "0.25 mm"}), {"--radius", "--unit"});
+  const auto in_cm =
+      nlohmann::json::parse(bernal({"inspect", mesh, "--unit", "cm", "--radius", "1.9 mm", "--json"}).out);
+  EXPECT_EQ(in_cm["chambers"]["radius"], 0.19);
 }
 
 TEST(ChambersOfAPacking, StandInEveryReport) {

@@ -93,7 +93,7 @@ TEST(ImportCommand, ItsSceneFreesTheSpheresWhereTheyAre) {
   EXPECT_EQ(report_of(folder / "freed")["n"], 5);
   EXPECT_EQ(bernal({"verify", folder / "freed"}).status, 0);
   const Ended protruding = bernal(
-      {"import", table, "--unit", "mm", "--box", "4,4,4", "--periodic", "none", "-o", folder / "walls"});
+      {"import", table, "--unit", "mm", "--box", "0.4 cm,4,4 mm", "--periodic", "none", "-o", folder / "walls"});
   EXPECT_EQ(protruding.status, 0) << protruding.err;
   EXPECT_NE(protruding.err.find("\nprotrudes  4, gap -0.6 of its radius"), std::string::npos)
       << protruding.err;

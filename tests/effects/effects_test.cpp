@@ -139,6 +139,13 @@ std::vector<std::pair<std::string, Scene>> scenes() {
                                      bed + "\n[[stage]]\ndo = \"settle\"\n",
                                  "test.toml"));
   add_periodic("polished", "[[stage]]\ndo = \"relax\"\npolish = 1e-6\n");
+  for (const std::string container : {"kind = \"periodic\"", "kind = \"box\"\nsize = [1.0, 1.0, 1.0]"})
+    all.emplace_back(
+        "cells in " + container.substr(8, 3),
+        parse_scene("[container]\n" + container +
+                        "\n[spheres]\ncount = 60\ncells = { volume = { distribution = "
+                        "\"uniform\", min = 1.0, max = 3.0, basis = \"number\" }, rounds = 1 }\n",
+                    "test.toml"));
   const std::string box = "[container]\nkind = \"box\"\nsize = [1.0, 1.0, 1.0]\n";
   const std::string exact = box + spheres + "[accuracy]\nwalls = \"exact\"\n";
   for (const std::string stages : {"insert", "relax", "grow"})
@@ -184,7 +191,7 @@ TEST_P(EffectsOf, TheSceneAreAllThatIsMadeThatAllocatesAndThatRuns) {
 
 TEST_P(EffectsOf, ThePlanAndThoseThatAreAbsentAreAllThatThereAre) {
   const Plan plan = build(GetParam().second);
-  std::set<std::string> all = {"start", "walls", "exact walls"};
+  std::set<std::string> all = {"start", "walls", "exact walls", "cells"};
   for (const StageEntry* stage : stage_entries())
     all.insert(stage->may_bring.begin(), stage->may_bring.end());
   std::set<std::string> told = names_of(plan);

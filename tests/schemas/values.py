@@ -21,6 +21,9 @@ GOOD = {
     "parts": ["[1, 2]", '[{ distribution = "mixture", of = [1, { distribution = "uniform", min = 1, '
               'max = 2 }], shares = [1, 2] }, 3]'],
     "solids": ['"part.stl"', '["part.stl", "other.stl"]', '[{ kind = "sphere", radius = 1 }, "part.stl"]'],
+    "table": ["{ volume = 2 }", '{ diameter = { distribution = "uniform", min = 1, max = 2 }, rounds = 0 }'],
+    "tables": ['[{ name = "core" }]', '[{ name = "core" }, { name = "shell", share = 0.25, material_density = "2 g/cm3" }]'],
+    "table_lists": ['[[{ name = "core" }, { name = "shell", share = 0.25 }], []]'],
 }
 BAD = {
     "flag": ["1", '"true"', "[]"], "integer": ['"3"', "1.5", "true", "[1]", "1e31"], "number": ["true", "[1]", "{}"],
@@ -36,6 +39,11 @@ BAD = {
                      '{ distribution = "uniform", min = 1 }', '{ distribution = "constant", value = 1, sigma = 1 }'],
     "parts": ["[]", "1", "[0]", '[1, { distribution = "nonsense" }]'],
     "solids": ["[]", "1", '""', "[1]", '[{ kind = "periodic", edge = 1 }]', '[{ kind = "sphere" }]'],
+    "table": ["[]", "1", '""', "{}", "[{ volume = 2 }]", "{ volume = 0 }", "{ volume = 1, diameter = 1 }",
+              "{ volume = 1, rounds = -1 }", "{ volume = 1, name = 1 }"],
+    "tables": ["[]", "1", '""', "[1]", "{}", "[{}]", '[{ name = "a", share = 1 }]', '[{ name = "a", sd = 1 }]',
+               '[{ name = "a", thickness = { mean = 1 } }]', '[{ name = "a", share = 0.5, thickness = 1 }]'],
+    "table_lists": ["[]", "1", "[1, 2]", '[{ name = "core" }, { name = "shell" }]', '[[{ share = 0.5 }], []]'],
 }
 
 
@@ -136,15 +144,19 @@ class Table:
             return sphere + spheres + "[engine]\n" + "\n".join(body) + "\n"
         if self.name == "scene":
             return "\n".join(body) + "\n" + sphere + spheres
+        if self.name == "spheres" and "cells" in lines:  # which are of boxes, and as many as are counted
+            body = [line for line in body if not line.startswith(("fill", "count"))]
+            return '[container]\nkind = "periodic"\n[spheres]\ncount = 3\n' + "\n".join(body) + "\n"
         if self.name == "spheres":
             return sphere + "[spheres]\n" + "\n".join(body) + "\n"
         return sphere + spheres + f"[{self.name}]\n" + "\n".join(body) + "\n"
 
 
 def tables_of(reference):
-    """All but zones: their keys are those of [spheres], and where they lie depends on the container."""
+    """All but zones, whose keys are those of [spheres], and whose place depends on the container, and but tables that
+    stand within others: their values are samples of the keys that they stand in."""
     for group in reference["groups"]:
-        if group["name"] == "zone":
+        if group["name"] in ("zone", "table"):
             continue
         for table in group["tables"]:
             yield Table(group["name"], group["selector"], table["name"],

@@ -302,6 +302,7 @@ TEST(Export, RefusesWhatAFormatCannotHoldOrBeTold) {
       EXPECT_NE(what.find(word), std::string::npos) << word << ": " << what;
   };
   refused([&] { exported_to(folder, in_plane(), "yade"); }, {"\"yade\"", "2 dimensions", "lammps", "extxyz"});
+  refused([&] { output_of("vtk"); }, {"spheres.vtp already", "grid of voxels"});
   refused([&] { output_of("lamps"); }, {"unknown format \"lamps\"", "did you mean \"lammps\"?"});
   refused([&] { output_of("yade", {{"density", "7"}}); }, {"yade takes no density", "lammps"});
   refused([&] { output_of("openmc", {{"unit", "mm"}}); }, {"openmc takes no unit"});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <random>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "files/npy_file.hpp"
 #include "support/folder.hpp"
 #include "support/scene_texts.hpp"
+#include "support/written_files.hpp"
 
 namespace bernal {
 namespace listed_sizes_test {
@@ -141,6 +143,9 @@ TEST(List, OfAResultIsReadAgain) {
     write_scene(scene, folder / "alone" / "scene.toml");
     const std::filesystem::path alone = folder / "alone" / "scene.toml";
     EXPECT_EQ(std::get<ListedSizes>(read_scene(alone).sizes).values, values);
+    check_writable(alone.parent_path(), again.scene, {});  // as bernal wrote it, with its list beside it
+    std::ofstream(alone, std::ios::app) << "# mine\n";
+    testing::error_of([&] { check_writable(alone.parent_path(), again.scene, {}); });
   }
 }
 

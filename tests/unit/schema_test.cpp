@@ -97,6 +97,16 @@ std::string sample(const Key& key, int choice) {
       return "1";
     case Type::solids:
       return choice == 0 ? "[\"part.stl\", { kind = \"sphere\", radius = 0.1 }]" : "[\"/tmp/a.stl\"]";
+    case Type::table:
+      return choice == 0 ? "{ volume = 2.5, rounds = 1 }"
+                         : "{ diameter = { distribution = \"uniform\", min = 1, max = 2 } }";
+    case Type::tables:
+      return choice == 0 ? "[{ name = \"core\" }]"
+                         : "[{ name = \"core\", material = \"UO2\", material_density = 10800 }, "
+                           "{ name = \"shell\", share = 0.30000000000000004 }]";
+    case Type::table_lists:  // one for each of three
+      return "[[{ name = \"core\" }, { name = \"shell\", thickness = { distribution = \"normal\", "
+             "mean = 0.01, sd = 0.001, max = 0.012 } }], [], [{ name = \"core\" }]]";
   }
   return "";
 }
@@ -202,7 +212,12 @@ void for_every_entry(Visit visit) {
         return key.name == "count" || key.name == "packing_fraction" || key.name == "height" ||
                key.name == "bed_layers";
       });
+      const bool of_cells = std::ranges::find(keys, "cells", &Key::name) != keys.end();
+      if (of_cells && !periodic) continue;  // they are of boxes
       std::erase_if(keys, [&](const Key& key) {
+        if (of_cells && (key.name == "scale" || key.name == "draw" || key.name == "fill" ||
+                         key.name == "mass" || key.name.starts_with("start")))
+          return true;
         const bool of_heap = key.name == "top" || key.name == "heap_angle";
         const bool of_bed = of_heap || key.name == "bed" || key.name == "porosity" || key.name == "height" ||
                             key.name == "bed_layers";

@@ -9,8 +9,11 @@
 
 #include <fmt/format.h>
 
+#include "bernal/formats/export.hpp"
+#include "bernal/formats/import.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/describe.hpp"
+#include "bernal/report/zones_in_place.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
@@ -108,15 +111,19 @@ TEST(Zones, LayersWithoutAPlaceLieInTheirOrder) {
   EXPECT_TRUE(is_certified(packing));
 }
 
+std::filesystem::path written_mesh(const Folder& folder, const std::string& name, const Mesh& mesh) {
+  std::string off = fmt::format("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
+  for (const Vector<3>& v : mesh.vertices) off += fmt::format("{} {} {}\n", v[0], v[1], v[2]);
+  for (const auto& t : mesh.triangles) off += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
+  return folder.write(name, off);
+}
+
 TEST(Zones, ChambersAreCountedFromTheLargest) {
   const Folder folder;
   Mesh mesh = mesh_of_box({Vector<3>::Zero(), Vector<3>(10, 10, 10)});
   append(mesh, mesh_of_box({Vector<3>(20, 0, 0), Vector<3>(28, 8, 8)}));
   append(mesh, mesh_of_box({Vector<3>(40, 0, 0), Vector<3>(46, 6, 6)}));
-  std::string off = fmt::format("OFF\n{} {} 0\n", mesh.vertices.size(), mesh.triangles.size());
-  for (const Vector<3>& v : mesh.vertices) off += fmt::format("{} {} {}\n", v[0], v[1], v[2]);
-  for (const auto& t : mesh.triangles) off += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
-  const auto file = folder.write("chambers.off", off);
+  const auto file = written_mesh(folder, "chambers.off", mesh);
   const std::string container =
       fmt::format("container = {{ kind = \"mesh\", file = \"{}\" }}\n", file.string());
   const Packing packing = run(build(scene_of(container + "spheres = { diameter = 3 }\n"
@@ -138,6 +145,87 @@ TEST(Zones, ChambersAreCountedFromTheLargest) {
   EXPECT_NE(refusal(container + "spheres = { diameter = 3 }\n[[zone]]\nchamber = 4\ndiameter = 1\n")
                 .find("has 3 closed spaces"),
             std::string::npos);
+}
+
+TEST(Zones, ASurfaceInTheContainerHasItsOwnSpheresAndTheRestLiesAround) {
+  const Folder folder;
+  const auto file =
+      written_mesh(folder, "cube.off", mesh_of_box({Vector<3>(-2.5, -2.5, 6), Vector<3>(2.5, 2.5, 14)}));
+  const std::string zone =
+      fmt::format("[[zone]]\nmesh = \"{}\"\ndiameter = 0.8\nmaterial = \"sand\"\n", file.string());
+  const Packing packing =
+      run(build(scene_of(std::string(cylinder) + "spheres = { diameter = 1.2 }\n" + zone)), {});
+  EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+  EXPECT_TRUE(is_certified(packing));
+  EXPECT_GT(std::ranges::count(packing.classes, 0u), 300);
+  EXPECT_GT(std::ranges::count(packing.classes, 1u), 400);
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+    const Vector<3> c = packing.spheres.center(i) - Vector<3>(0, 0, 10);
+    const double r = packing.spheres.r[i];
+    const Vector<3> beyond = (c.cwiseAbs() - Vector<3>(2.5, 2.5, 4)).eval();
+    if (packing.classes[i] == 0)
+      EXPECT_LE(beyond.maxCoeff(), -r) << i;
+    else
+      EXPECT_GE(beyond.cwiseMax(0).norm(), r * (1 - 1e-12)) << i;
+  }
+  const auto zones = zones_in_place(packing.scene, packing.domain, packing.spheres, packing.classes);
+  ASSERT_TRUE(zones);
+  EXPECT_TRUE(zones->misplaced.empty());
+  ASSERT_TRUE(packing.scene.zones[0].mesh);
+  EXPECT_EQ(packing.scene.zones[0].mesh->sha256.size(), 1u) << "a result names the file by its digest";
+  std::vector<std::uint32_t> exchanged = packing.classes;
+  std::swap(exchanged.front(), exchanged.back());
+  EXPECT_EQ(zones_in_place(packing.scene, packing.domain, packing.spheres, exchanged)->misplaced,
+            (std::vector<std::uint64_t>{0, packing.spheres.size() - 1}));
+}
+
+TEST(Zones, ASurfaceLiesInTheContainerAndInNoOtherZone) {
+  const Folder folder;
+  const auto zone = [&](const char* name, const Bounds<3>& cube) {
+    return fmt::format("[[zone]]\nmesh = \"{}\"\ndiameter = 0.5\n",
+                       written_mesh(folder, name, mesh_of_box(cube)).string());
+  };
+  const std::string inside = zone("a.off", {Vector<3>(-2, -2, 6), Vector<3>(2, 2, 14)});
+  const auto says = [&](const std::string& zones, const std::string& what) {
+    EXPECT_NE(refusal(std::string(cylinder) + zones).find(what), std::string::npos)
+        << refusal(std::string(cylinder) + zones);
+  };
+  says(inside + zone("b.off", {Vector<3>(-1, -1, 13), Vector<3>(1, 1, 17)}), "in another zone");
+  says(inside + zone("c.off", {Vector<3>(2.5, -1, 8), Vector<3>(6.5, 1, 12)}), "outside of the container");
+  says(inside + zone("d.off", {Vector<3>(20, 20, 8), Vector<3>(24, 22, 12)}),
+       "lies outside of the container");
+  says(inside + "[[zone]]\nplace = \"z > 16\"\ndiameter = 0.5\n", "all surfaces");
+  EXPECT_NE(refusal("container = { kind = \"periodic\", size = [9, 9, 20] }\n" +
+                    zone("e.off", {Vector<3>(2, 2, 6), Vector<3>(6, 6, 14)}))
+                .find("without periods"),
+            std::string::npos);
+}
+
+TEST(Zones, PhasesOfMfixHaveTheirDensities) {
+  const Folder folder;
+  const Packing packing =
+      run(build(scene_of(std::string(cylinder) +
+                         "spheres = { diameter = 2, material_density = 2000 }\n[[zone]]\nplace = \"z < 8\"\n"
+                         "diameter = 1\nmaterial = \"sand\"\nmaterial_density = 2600\n")),
+          {});
+  write_export(packing, output_of("mfix"), folder / "particle_input.dat");
+  const std::string text = text_of(folder / "particle_input.dat");
+  for (const char* line : {"\nPhase_ID         T\n", "\nDensity          T\n",
+                           "Phase_ID   Diameter   Density\n", " 1 0.001 2600\n", " 2 0.002 2000\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  EXPECT_EQ(import_packing(folder / "particle_input.dat").packing.spheres.size(), packing.spheres.size());
+}
+
+TEST(Zones, HintsSayOfWhichZone) {
+  const Plan plan = build(scene_of(std::string(cylinder) +
+                                   "spheres = { diameter = 2, count = 3 }\n[[zone]]\nplace = \"z < 8\"\n"
+                                   "diameter = 1\ncount = 5\nmaterial = \"sand\"\n"));
+  const auto has = [&](const std::string& beginning) {
+    return std::ranges::any_of(plan.hints,
+                               [&](const std::string& hint) { return hint.starts_with(beginning); });
+  };
+  EXPECT_TRUE(has("sand: 5 spheres will float"));
+  EXPECT_TRUE(has("rest: 3 spheres will float"));
 }
 
 TEST(Zones, APeriodicBoxIsCutAtThePlaneAndWhereItBegins) {
@@ -223,7 +311,8 @@ TEST(Zones, RefuseWhatCannotBeMeant) {
   says(in_cylinder + "[[zone]]\nplace = \"z < 8\"\n",
        "[[zone]] 1 needs exactly one of \"radius\", \"diameter\"");
   says(in_cylinder + "[[zone]]\nplace = \"z < 8\"\ndiametr = 1\n", "unknown key \"diametr\" in [[zone]] 1");
-  says(in_cylinder + "[[zone]]\ndiameter = 1\n", "needs exactly one of \"place\", \"solid\", \"chamber\"");
+  says(in_cylinder + "[[zone]]\ndiameter = 1\n",
+       "needs exactly one of \"place\", \"solid\", \"chamber\", \"mesh\"");
   says(in_cylinder + "[[zone]]\nplace = \"z < 8\"\nsolid = \"a\"\ndiameter = 1\n", "exclude each other");
   says(in_cylinder + "[[zone]]\nchamber = 1\ndiameter = 1\n", "is one of a mesh");
   says(in_cylinder +

@@ -50,7 +50,7 @@ SECTIONS = [
     ("Results", [("results/reaches", "data/guide/reaches.md", "What it reaches")] +
      [(f"results/{name}", f"data/results/{name}.md", title) for name, title in (
          ("methods", "What each method costs"), ("effects", "Effects, one by one"), ("arithmetic", "What each level of arithmetic costs"),
-         ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("beds", "Beds in columns"), ("poured", "Beds with friction"),
+         ("exchange", "Exchange of sizes"), ("loose", "Loose packings"), ("beds", "Beds in columns"), ("column", "A closed column"), ("poured", "Beds with friction"),
          ("containers", "Many spheres in CAD parts"),
          ("large", "Large packings"), ("lists", "Lists and arrays"),
          ("engines", "Engines over MPI"), ("scale", "How relaxation scales"), ("gpu", "Relaxation on a GPU"), ("packers", "Against public packers"),

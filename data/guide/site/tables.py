@@ -78,7 +78,8 @@ def scene_keys(reference):
              "engine": ("Engines", "[engine], chosen by <code>kind</code>"),
              "stage": ("Stages", "[[stage]], in the order in which they stand, chosen by <code>do</code>"),
              "output": ("Files for other programs", "[[output]], chosen by <code>format</code>"),
-             "zone": ("Zones", "[[zone]], one for each part of the container")}
+             "zone": ("Zones", "[[zone]], one for each part of the container"),
+             "table": ("Tables within tables", "a key of another table, one or an array of them")}
     parts = ["<h1>Every key of a scene</h1>",
              "<p>Made from the table that scenes are read by; in a terminal <code>bernal keys NAME</code> says the same. "
              "Lengths are positive numbers in the scene's <code>unit</code>, from 1e-30 to 1e30 of it. A key that is "
@@ -90,7 +91,8 @@ def scene_keys(reference):
             parts.append(f"<p>In {place}.</p>")
         for part in group["tables"]:
             name = part["name"]
-            shown = {"scene": "top of the file", "zone": "[[zone]]"}.get(name, f"[{name}]") if not group["selector"] \
+            shown = {"scene": "top of the file", "zone": "[[zone]]"}.get(
+                name, f"{{ {name} }}" if group["name"] == "table" else f"[{name}]") if not group["selector"] \
                 else f'{group["selector"]} = "{name}"'
             parts.append(f'<h3 id="{group["name"]}-{name}">{escaped(shown)}</h3>')
             parts.append(f"<p>{phrase(part['help'][:1].upper() + part['help'][1:])}.</p>")

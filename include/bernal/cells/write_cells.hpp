@@ -10,6 +10,9 @@
 
 namespace bernal {
 
+/// The cells of a packing: by its weights where it has such, see `Packing::weights`, else by radii.
+Cells cells_of(const Packing&, const CellsOptions& = {});
+
 /// A format that cells are written in.
 struct CellFormat {
   std::string name;    ///< "vtu"

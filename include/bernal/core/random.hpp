@@ -55,6 +55,8 @@ enum class Stream : std::uint64_t {
   measure = 8,
   grow = 9,
   fly = 10,
+  layers = 11,
+  inside = 12,
   test = 255
 };
 constexpr std::uint64_t stream(Stream purpose, std::uint64_t index = 0) {

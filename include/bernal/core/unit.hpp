@@ -32,4 +32,10 @@ Ratio conversion_ratio(Unit from, Unit to);
 /// The double nearest to that.
 double conversion_factor(Unit from, Unit to);
 
+/// Whether a length is at most another one, in units of their own, as exact real numbers: no product and no
+/// quotient is rounded. Precondition: both are between 1e-30 and 1e30.
+bool is_at_most(double length, Unit unit, double other, Unit unit_of_other);
+/// The largest double in `to` that is at most a length in `from`, exactly. Precondition: as above.
+double largest_at_most(double length, Unit from, Unit to);
+
 }  // namespace bernal

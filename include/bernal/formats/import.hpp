@@ -35,6 +35,7 @@ struct ImportOptions {
   std::optional<Scene> container = {};               ///< a scene with the container
   std::vector<double> shift = {};                    ///< added to every centre
   std::optional<int> frame = {};                     ///< of a trajectory, from 1; by default the last
+  std::string level = {};                            ///< of files with several; by default the outermost
   std::optional<int> dimension = {};                 ///< 2: discs, whose third coordinates are all equal
 };
 
@@ -50,7 +51,7 @@ struct ImportedPacking {
 };
 
 /// Reads a packing that another program made. Its domain is the named scene's container, else the box in the
-/// options, else the file's box, else the bounds of the spheres as walls; a box in the file is periodic
+/// options, else the file's container or box, else the bounds of the spheres as walls; a box in the file is periodic
 /// unless the file says otherwise. Spheres with numbers are sorted by them. Overlaps are accepted: they are
 /// for the certificate.
 ///

@@ -51,7 +51,7 @@ struct Cells {
   int dimension = 3;
   Vector<3> periods = Vector<3>::Zero();  ///< 0 along axes that do not repeat themselves
   std::vector<Vector<3>> centers;         ///< in one period
-  std::vector<double> radii;
+  std::vector<double> radii;              ///< whose squares are the weights
   std::vector<Vector<3>> corners;  ///< each once a period; z = 0 in two dimensions
   std::vector<Face> faces;
   std::vector<std::uint32_t> first_corner;  ///< of every face, and the end

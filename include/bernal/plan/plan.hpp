@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -22,6 +23,7 @@ struct StartSpheres {
 };
 
 struct PlannedPart;
+struct PlannedInside;
 
 /// A scene that has been checked as a whole, with everything it names made and nothing else.
 struct Plan {
@@ -60,6 +62,9 @@ struct Plan {
   /// Of a scene with zones, in the order in which they are packed; else none. What the whole says is then
   /// their sum.
   std::vector<PlannedPart> parts;
+  /// One for each of `Scene::inside`. What the whole says of spheres is without those that lie inside, what
+  /// it says of time and memory with them.
+  std::vector<PlannedInside> insides;
 };
 
 /// What is packed by itself of a scene with zones: a zone, or a piece of what lies in none.
@@ -70,6 +75,22 @@ struct PlannedPart {
   std::optional<double> level = {};     ///< where a layer ends: its height above the lowest point
   Vector<3> shift = Vector<3>::Zero();  ///< from the domain of its plan to the whole: of periodic boxes
 };
+
+/// What lies inside the spheres of a class: the plan of one such packing, in the ball that is expected.
+struct PlannedInside {
+  Plan plan = {};
+  std::uint32_t of_class = 0, layer = 0;  ///< as in `PackingsInside`
+  std::string name = {};                  ///< of the class; "spheres" where the scene tells none apart
+  double ball = 0;                        ///< its radius, in the unit of the spheres' scene
+  double filled = 0;                      ///< spheres that are likely to be filled
+  std::optional<int> templates = {};      ///< packings that are made; without, one for every sphere
+
+  double packings() const { return templates ? std::min<double>(*templates, filled) : filled; }
+};
+
+/// How many spheres there would be if every sphere held what its packing inside holds, those of all levels
+/// among them: nothing of it is ever made.
+double expected_count_of_all_levels(const Plan&);
 
 /// Completes the scene and makes what it names. Throws Error (bad_scene, bad_mesh) where parts do not fit
 /// each other: a sphere larger than the container, a mesh that is no container. Cost: reading the mesh.

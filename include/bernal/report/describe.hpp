@@ -2,6 +2,7 @@
 #include <string>
 
 #include "bernal/plan/plan.hpp"
+#include "bernal/scene/packing.hpp"
 
 namespace bernal {
 
@@ -11,5 +12,8 @@ std::string describe(const Plan& plan);
 /// The same with all stages and their expected cost: what `bernal explain` prints. If the scene names no
 /// stages, the default ones are listed at the end with all their options.
 std::string explain(const Plan& plan);
+
+/// What a scene asks of the cells of its packing, beside what they are.
+std::string cells_in_words(const PackedCells&);
 
 }  // namespace bernal

@@ -9,6 +9,7 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/measure/rest.hpp"
 #include "bernal/plan/plan.hpp"
+#include "bernal/report/zones_in_place.hpp"
 #include "bernal/scene/packing.hpp"
 #include "bernal/verify/certificate.hpp"
 
@@ -19,8 +20,10 @@ namespace bernal {
 /// spheres are near, and holds one index twice for a sphere and its own image; `worst_wall` and
 /// `min_wall_gap` are null if no sphere is near a wall. `overlaps` and `protrusions` are present if a list
 /// was requested and has entries. Numbers that are not finite become null. `settled` is present if a `Rest`
-/// is given; its `list`, of spheres with centre and radius, if it has entries.
-std::string certificate_as_json(const Certificate&, const std::optional<Rest>& = {},
+/// is given; its `list`, of spheres with centre and radius, if it has entries. `misplaced`, the spheres that
+/// are not in the place of their zone, is present if `ZonesInPlace` is given.
+std::string certificate_as_json(const Certificate&, const std::optional<ZonesInPlace>& = {},
+                                const std::optional<Rest>& = {},
                                 const Spheres<dynamic>& = Spheres<dynamic>(3));
 
 /// Measurements as a JSON object: what `bernal measure --json` prints. Lengths are in the scene's unit; sizes

@@ -34,8 +34,10 @@ Spheres<dynamic> read_csv_of(const Scene& scene, const std::filesystem::path& fi
 /// Which file of a result's folder holds its spheres: spheres.csv, or spheres.npy where only that is there;
 /// where it can be read, see `is_unpublished`.
 std::filesystem::path spheres_of_result(const std::filesystem::path& folder);
-/// Those spheres. Throws as `read_csv_of`. Memory: for the spheres once.
-Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder);
+/// Those spheres, and if asked for their classes, see `classes_in`. Throws as `read_csv_of`. Memory: for the
+/// spheres once.
+Spheres<dynamic> read_spheres_of(const Scene& scene, const std::filesystem::path& folder,
+                                 std::vector<std::uint32_t>* classes = nullptr);
 
 /// The same of a file of another program, whose header names its columns in any order: what a scene may start
 /// from; or an array of NumPy's. Throws Error{bad_packing} for a header that does not, as the others for the

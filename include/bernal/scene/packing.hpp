@@ -96,6 +96,25 @@ struct PackingsInside {
   std::vector<std::array<double, 4>> rotations = {};  ///< unit quaternions w, x, y, z, one a filled sphere
 };
 
+/// What is there of the volumes that a scene asks of the cells of its packing, see `Scene::cells`.
+struct PackedCells {
+  /// The volumes that the scene states are scaled by this, so that their sum is the volume of the box.
+  double scale = 1;
+  /// Below which this share of the cells lies, in the scene's unit to the power of three: as it is wanted, of
+  /// the cells by the radii of the spheres, and of those by the weights.
+  struct Quantile {
+    double share, wanted, by_radii, reached;
+  };
+  std::vector<Quantile> quantiles = {};
+  /// Kolmogorov's, from the distribution that the scene states: the largest difference of the shares below
+  /// any volume. Of N cells it is 1/(2N) at least.
+  double distance_by_radii = 0, distance = 0;
+  double error = 0;            ///< the largest deviation of a volume from the one that is wanted of it
+  double mean_sphericity = 0;  ///< of the cells, see `CellWeights`
+  int rounds = 0;              ///< in which the spheres were packed again with other sizes
+  int steps = 0;               ///< of Newton's method
+};
+
 /// The result of a run: plain data. Lengths are in the scene's unit and frame. `spheres` has the dimension of
 /// the domain.
 struct Packing {
@@ -103,6 +122,10 @@ struct Packing {
   /// Of each sphere, its place in `classes_of(scene)`; empty where the scene tells no spheres apart.
   std::vector<std::uint32_t> classes = {};
   std::vector<PackingsInside> inside = {};  ///< one for each of `Scene::inside`
+  /// Of the cells that the scene asks for, one a sphere, see `CellWeights`; without such their weights are
+  /// the squared radii. `with_weights` has spheres of these cells.
+  std::vector<double> weights = {};
+  std::optional<PackedCells> cells = {};  ///< of the run that found the weights
   Domain domain;
   /// Of the domain, see `Plan::container`, so that measuring need not make it again; may be null.
   std::shared_ptr<const Container> container = {};
@@ -135,9 +158,9 @@ struct Packing {
   double packing_fraction() const;
 };
 
-/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`, or where
-/// the scene has zones by those of its classes; nothing where these are not said, and in other than three
-/// dimensions.
+/// What spheres of that packing fraction weigh together, in kg, by the scene's `material_density`, else by
+/// those of their layers, or where the scene has zones by those of its classes; nothing where these are not
+/// said, and in other than three dimensions.
 std::optional<double> mass_of(const Packing&, double packing_fraction);
 
 }  // namespace bernal

@@ -147,6 +147,10 @@ struct Output {
   std::optional<double> voxel = {};
   std::optional<int> resolution = {};
   VoxelValues values = VoxelValues::binary;
+  std::string material = {};  ///< of an image of fractions: what alone it is of; empty: all of the spheres
+  /// Of a file of triangles: what alone it holds, a layer of the spheres by its name; empty: whole spheres.
+  std::string layer = {};
+  bool layers = true;  ///< of files of solids and objects: a scene's layers of spheres, each by itself
   ContactTreatment contact = ContactTreatment::none;
   /// Between two spheres over the sum of their radii, to a wall over the radius: what a treatment leaves, or
   /// below what it acts.
@@ -170,6 +174,8 @@ struct Scene {
   SceneContainer container;  ///< the unit cube, if nothing else is said
   SceneSizes sizes;          ///< left at a Constant of 0 where those of the start are all there are
   bool sizes_are_diameters = false;
+  /// In place of `sizes`, which is then left at its Constant of 0: see `weights_for_volumes`.
+  std::optional<CellSizes> cells = {};
   double scale = 1;      ///< the spheres are so many times as large as `sizes` says
   bool largest = false;  ///< as many times as `Target::count` of them fit: `run` finds out
   /// Without it quantiles where a stage keeps the sizes in a container, and wherever few spheres carry much
@@ -196,8 +202,11 @@ struct Scene {
   /// Whether there are sizes to draw from, besides those of zones.
   bool draws() const {
     const auto* constant = std::get_if<Constant>(&sizes);
-    return !constant || constant->value != 0;
+    return cells || !constant || constant->value != 0;
   }
+  /// Surfaces that stand in files: those of the container and its obstacles, then those of the zones.
+  std::vector<MeshFile*> meshes();
+  std::vector<const MeshFile*> meshes() const;
   bool asks_for_gaps() const { return gap > 0 || wall_gap > 0; }
   bool is_periodic() const { return std::holds_alternative<PeriodicBox>(container); }
   int dimension() const {
@@ -218,6 +227,9 @@ struct Zone {
   std::vector<std::string> place = {};
   std::vector<std::string> solids = {};  ///< of the container's file, by name or by number from 1
   std::optional<int> chamber = {};       ///< of a mesh of several closed spaces: the first is the largest
+  /// A closed surface within the container, in the unit of its file; else in that of the container's file,
+  /// else in the scene's.
+  std::optional<MeshFile> mesh = {};
   /// The sizes, the amount, the material: what [spheres] may say, but for gaps, a start and beds.
   Scene spheres;
   Locations locations = {};

@@ -26,6 +26,7 @@ struct ReferenceKey {
   /// Of what its numbers are: "none", "length", "diameter", "spread", "mass" or "density": in text they stand
   /// with their unit.
   std::string quantity = "none";
+  std::string table = {};  ///< of tables that may stand there, by its name in the group "table"
 };
 
 /// What a scene may say in one of its tables: of one container, size distribution, stage or output, or in a
@@ -40,8 +41,8 @@ struct ReferenceTable {
 
 /// Tables of which one is chosen by a word, or that all may be there.
 struct ReferenceGroup {
-  std::string
-      name;  ///< where it stands: "container", "stage", "output", "engine"; "diameter" of sizes; "scene"
+  std::string name;      ///< where it stands: "container", "stage", "output", "engine"; "diameter" of sizes;
+                         ///< "scene"; "table"
   std::string selector;  ///< the key whose word chooses: "kind", "distribution", "do", "format"; empty: none
   std::string title;     ///< for people
   std::vector<ReferenceTable> tables;

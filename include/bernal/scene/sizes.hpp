@@ -138,6 +138,19 @@ struct SceneSizes : std::variant<Constant, Classes, Uniform, Normal, Lognormal, 
   Locations locations;
 };
 
+/// Sizes that the Laguerre cells of the packing are to have, in place of sizes of the spheres: exactly one of
+/// the two distributions. The volumes are their quantiles, one a sphere, scaled so that their sum is the
+/// volume of the box.
+struct CellSizes {
+  std::optional<SceneSizes> volume = {};    ///< by number; in the scene's unit to the power of three
+  std::optional<SceneSizes> diameter = {};  ///< of the ball of the same volume
+  /// How often at most the spheres are packed again, with sizes that brought their own cells nearer to that.
+  int rounds = 3;
+  Locations locations = {};
+
+  const SceneSizes& sizes() const { return volume ? *volume : *diameter; }
+};
+
 /// The list of which every sphere is packed exactly once; null where the sizes are drawn.
 inline const ListedSizes* each_once(const SceneSizes& sizes) {
   const auto* list = std::get_if<ListedSizes>(&sizes);

@@ -19,6 +19,11 @@ struct SphereClass {
 /// where the scene tells no spheres apart. Precondition: the scene is complete.
 std::vector<SphereClass> classes_of(const Scene&);
 
+/// What spheres of a class without layers are made of, by name.
+inline const std::string& material_of(const SphereClass& of) {
+  return of.material.empty() ? of.name : of.material;
+}
+
 /// Which class each sphere is of, where its size says that: of a scene without zones; else empty. Equal sizes
 /// of two classes are the first one's. Cost: O(N) times the number of classes.
 std::vector<std::uint32_t> classes_by_size(const Packing&);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bernal/scene/packing.hpp"
@@ -23,7 +24,24 @@ struct SphereLayers {
 
 /// Nothing is made where the scene names no layers. Drawn thicknesses are keyed by the seed and the number of
 /// the sphere, so that they are the same whenever they are asked for. Throws Error{bad_packing} for layers
-/// that are thicker than a sphere. Cost: O(N).
+/// that are thicker than a sphere, or end below its surface, and for spheres whose class nobody knows.
+/// Cost: O(N).
 SphereLayers layers_of(const Packing&);
+
+/// Of each class, in the order of `classes_of`, what its layers are; empty where the scene names none.
+/// Precondition: the scene is complete.
+std::vector<std::vector<Layer>> layers_by_class(const Scene&);
+
+/// Whether a scene names layers, of whichever spheres.
+bool has_layers(const Scene&);
+
+/// What spheres and their layers are made of, each once, class by class and from the centre out; "spheres"
+/// where the scene tells no spheres apart.
+std::vector<std::string> materials_of(const Scene&);
+
+/// What a layer is made of, by name.
+inline const std::string& material_of(const Layer& layer) {
+  return layer.material.empty() ? layer.name : layer.material;
+}
 
 }  // namespace bernal

@@ -89,6 +89,23 @@ struct Certificate {
   std::vector<Overlap> overlaps;
   std::vector<Protrusion> protrusions;
 
+  /// What was proven of packings inside of spheres, a level at a time: of all that lie inside the spheres of
+  /// a class, see `certify_levels`. What stands above is of the outermost spheres alone.
+  struct Level {
+    std::string name;            ///< the classes on the way in: "pebble", "pebble / kernel"
+    std::uint64_t packings = 0;  ///< each of which was certified once, in its ball
+    std::uint64_t packed = 0;    ///< spheres in these
+    std::uint64_t filled = 0;    ///< spheres around it that hold one of them, each as often as it stands
+    std::uint64_t spheres = 0;   ///< that stand for themselves
+    std::uint64_t pairs_tested = 0, walls_tested = 0, decided_double = 0, decided_exact = 0;
+    std::uint64_t overlapping_pairs = 0, protruding_spheres = 0;
+    /// Filled spheres whose innermost layer is smaller than the ball that they hold, or that hold no packing
+    /// which is there, or are turned by no unit quaternion.
+    std::uint64_t misplaced = 0;
+  };
+  std::vector<Level> levels;                ///< none where nothing lies inside
+  std::uint64_t spheres_of_all_levels = 0;  ///< with those of the levels, which stand for themselves
+
   double seconds = 0;
   std::string statement;  ///< one sentence for readers
 };

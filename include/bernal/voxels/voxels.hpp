@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string_view>
+#include <vector>
 
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/spheres.hpp"
@@ -12,9 +13,18 @@ namespace bernal {
 
 /// The values of an image's voxels.
 enum class VoxelValues {
-  binary,    ///< one byte: 0 pore, 1 sphere, 2 outside the container
-  labels,    ///< four bytes, unsigned: 0 pore, i + 1 sphere i, 0xFFFFFFFF (-1 if signed) outside
-  fraction,  ///< a float: the share of the voxel's volume inside spheres
+  binary,     ///< one byte: 0 pore, 1 sphere, 2 outside the container
+  labels,     ///< four bytes, unsigned: 0 pore, i + 1 sphere i, 0xFFFFFFFF (-1 if signed) outside
+  fraction,   ///< a float: the share of the voxel's volume inside spheres, or inside some of their layers
+  materials,  ///< one byte: 0 pore, k what the layers are made of, 255 outside the container
+  layers,     ///< the same of the layers themselves
+};
+
+/// What spheres are made of, from the centre out: a ball, then shells. Empty: each is one ball.
+struct VoxelLayers {
+  std::vector<std::size_t> first = {};   ///< one entry a sphere, and one more: where its layers begin below
+  std::vector<double> outer = {};        ///< where each layer ends, ascending to the sphere's radius
+  std::vector<std::uint8_t> value = {};  ///< of each layer: from 1 to 254; of a fraction 1 where it counts
 };
 
 /// Bytes a voxel: 1 or 4.
@@ -67,7 +77,11 @@ using TakeLayers = std::function<void(std::string_view)>;
 ///
 /// A fraction is the exact volume (area in two dimensions) of the spheres in the voxel over the voxel's, to a
 /// few times 1e-16 (r/h)^3 for voxels of edge h, rounded to a float. Fractions ignore walls, so they sum to
-/// the volume of the spheres. Overlapping balls each count, up to 1.
+/// the volume of the spheres. Overlapping balls each count, up to 1. Of layers the fraction is that of those
+/// whose value is not 0: the difference of balls, each exact.
+///
+/// Where spheres have layers, a voxel of the values `materials` and `layers` has the value of the layer that
+/// contains its centre.
 ///
 /// Precondition: spheres and domain of two or three dimensions. The bytes are the same for any number of
 /// threads. Memory: at most 64 MiB of layers, or one layer (for fractions eight, up to 512 MiB), plus 48
@@ -75,6 +89,6 @@ using TakeLayers = std::function<void(std::string_view)>;
 /// a ball and 1 ns a triangle and layer; for fractions some µs a ball and some ns a voxel in its bounds.
 /// Throws Error{bad_packing} if a sphere meets a million of its images, Cancelled once the monitor says stop.
 void voxelise(const Spheres<dynamic>&, const Domain&, const VoxelGrid&, VoxelValues, const TakeLayers&,
-              const Monitor& monitor = {});
+              const Monitor& monitor = {}, const VoxelLayers& layers = {});
 
 }  // namespace bernal

@@ -6,6 +6,7 @@
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -21,6 +22,7 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -89,8 +91,18 @@ TopoDS_Shape cut_by(const TopoDS_Shape& shape, const std::vector<BallShape::Plan
 
 TopoDS_Shape solid_of(const BallShape& ball) {
   const gp_Ax2 axes(point_at(ball.center), direction_of(ball.pole), direction_of(ball.meridian));
-  return cut_by(BRepPrimAPI_MakeSphere(axes, ball.radius).Solid(), ball.cuts, ball.center, ball.radius,
-                "a sphere and the planes that cut it");
+  const TopoDS_Shape outer = BRepPrimAPI_MakeSphere(axes, ball.radius).Solid();
+  constexpr const char* what = "a sphere and the planes that cut it";
+  if (ball.hole == 0) return cut_by(outer, ball.cuts, ball.center, ball.radius, what);
+  const TopoDS_Shape inner = BRepPrimAPI_MakeSphere(axes, ball.hole).Solid();
+  if (!ball.cuts.empty()) {
+    BRepAlgoAPI_Cut cut(cut_by(outer, ball.cuts, ball.center, ball.radius, what), inner);
+    return only_solid(cut.Shape(), "a layer of a sphere and the planes that cut it");
+  }
+  const auto shell_of = [](const TopoDS_Shape& solid) {
+    return TopoDS::Shell(TopExp_Explorer(solid, TopAbs_SHELL).Current());
+  };
+  return BRepBuilderAPI_MakeSolid(shell_of(outer), TopoDS::Shell(shell_of(inner).Reversed())).Solid();
 }
 
 TopoDS_Shape solid_of(const NeckShape& neck) {

@@ -35,7 +35,7 @@ void take_out(Mesh& container, const Mesh& obstacle, const std::string& name) {
     if (!encloses_a_corner_of(container, obstacle))
       refuse(encloses_a_corner_of(obstacle, container)
                  ? is_whole
-                 : "lies outside of the container, or in an obstacle before it; check its unit and place");
+                 : "lies outside of the container, or in another solid; check its unit and place");
     container = std::move(both);
     return;
   }

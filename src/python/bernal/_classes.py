@@ -164,6 +164,8 @@ class Said:
 
 def _fixed(value: Any) -> Any:
     """A value to hash, the same where values are equal."""
+    if isinstance(value, dict):
+        return frozenset((name, _fixed(part)) for name, part in value.items())
     return tuple(map(_fixed, value)) if isinstance(value, list) else value
 
 

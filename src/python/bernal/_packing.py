@@ -159,6 +159,27 @@ class Packing:
         return [material for _, material, _ in self._classes[1]]
 
     @cached_property
+    def weights(self) -> Array:
+        """Of each Laguerre cell, where the scene asks for volumes of cells, as `cells = {"volume": …}` does: squared
+        lengths, of which only differences matter. A point belongs to the cell in which the squared distance from the
+        centre less the weight is least. Empty elsewhere: then the weights are the squared radii."""
+        weights: Array = self._core.weights()
+        weights.setflags(write=False)
+        return weights
+
+    @cached_property
+    def layers(self) -> list[dict[str, Any]]:
+        """What layers the spheres have, class by class and from the centre out; empty where the scene names none.
+
+        Each has `class`, `name`, `material`, `material_density` (kg/m3 or None) and, as arrays of one length, `spheres`
+        (the numbers of those that have it), `inner` and `outer` (where it begins and ends, from the centre)."""
+        layers: list[dict[str, Any]] = self._core.layers()
+        for layer in layers:
+            for name in ("spheres", "inner", "outer"):
+                layer[name].setflags(write=False)
+        return layers
+
+    @cached_property
     def centers(self) -> Array:
         """Shape (N, D). A copy, made at the first access and then kept; read-only."""
         centers = np.stack(self.columns, axis=1)

@@ -25,7 +25,9 @@ def plain(value: Any) -> Any:
         return os.fspath(value)
     if hasattr(value, "_as_toml"):  # a size distribution, a surface, a packing to start from
         return value
-    if isinstance(value, Iterable) and not isinstance(value, (bytes, dict)):
+    if isinstance(value, dict):
+        return {str(key): plain(part) for key, part in value.items() if part is not None}
+    if isinstance(value, Iterable) and not isinstance(value, bytes):
         return [plain(part) for part in value]
     raise _errors.InputError(
         "bad_argument", f"a scene takes numbers, text, flags and lists of them, not {value!r:.200}"
@@ -47,6 +49,8 @@ def text_of(value: Any) -> str:
         return text
     if isinstance(value, list):
         return "[" + ", ".join(map(text_of, value)) + "]"
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {text_of(part)}" for key, part in value.items()) + " }"
     return value._as_toml() if hasattr(value, "_as_toml") else repr(value)
 
 

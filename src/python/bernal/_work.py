@@ -214,6 +214,7 @@ def import_(
     shift: Iterable[float] = (),
     frame: int | None = None,
     dimension: int | None = None,
+    level: str = "",
     progress: Progress = None,
 ) -> Packing:
     """Reads the packing of another program, which can be verified, measured, exported or packed on. `Packing.notes` says
@@ -223,7 +224,8 @@ def import_(
     format : detected if empty. columns : "x,y,z,d", or "x=3,y=4,z=5,d=rad", by number from 1 or by name.
     diameter, radius : of all spheres; radii : a .npy of them. unit : where the file does not say it.
     box : edges of the box [0, a). periodic : axes along which it repeats itself, "xy", "none". shift : added to every
-    centre. frame : of a trajectory, from 1; else the last. dimension : 2 for discs.
+    centre. frame : of a trajectory, from 1; else the last. dimension : 2 for discs. level : of a file with spheres
+    inside of spheres, "core-1-1"; else the outermost.
     """
     name = os.path.abspath(_surfaces.path(file, "the file"))
     given = None if radii is None else _surfaces.path(radii, "a file")
@@ -232,11 +234,12 @@ def import_(
     whole = ((frame, "frame"), (dimension, "dimension"))
     counts = [None if n is None else _toml.whole(n, of, _toml.INT) for n, of in whole]
     places = [_toml.several(each, of) for each, of in ((box, "box"), (shift, "shift"))]
-    texts = {"format": format, "columns": columns, "periodic": periodic, "unit": "" if unit is None else unit}
+    texts = {"format": format, "columns": columns, "periodic": periodic, "level": level}
+    texts["unit"] = "" if unit is None else unit
     for of, text in texts.items():
         if not isinstance(text, str):
             raise _errors.InputError("bad_argument", f"{of} is text, not {text!r:.80}")
-    job = _core.import_(name, format, columns, *sizes, given, unit, places[0], periodic, scene, places[1], *counts)
+    job = _core.import_(name, format, columns, *sizes, given, unit, places[0], periodic, scene, places[1], *counts, level)
     return _imported(job, name, progress)
 
 

@@ -166,6 +166,22 @@ PricedRow price_insides(std::string name, const PricedContainer& container, std:
       });
 }
 
+/// Touching spheres in a cubic lattice, which touch flat walls as well; every other one of the upper half is
+/// larger by a double, so that some overlap by that. None where the container is thinner than the edge.
+Spheres<dynamic> touching_lattice(const PricedContainer& container, double edge) {
+  const Bounds<3> bounds = container.exact().bounds();
+  Spheres<dynamic> spheres(3);
+  Vector<dynamic> c(3);
+  for (c[2] = bounds.lower[2] + edge / 2; c[2] < bounds.upper[2]; c[2] += edge)
+    for (c[1] = bounds.lower[1] + edge / 2; c[1] < bounds.upper[1]; c[1] += edge)
+      for (c[0] = bounds.lower[0] + edge / 2; c[0] < bounds.upper[0]; c[0] += edge) {
+        const bool larger = spheres.size() % 2 == 1 && c[2] > bounds.center()[2];
+        if (container.at[filtered_level]->contains(Vector<3>(c), edge / 2))
+          spheres.push_back(c, larger ? std::nextafter(edge / 2, 1.0) : edge / 2);
+      }
+  return spheres;
+}
+
 }  // namespace
 
 PricedRow price_places(const PricedContainer& container, std::uint64_t count, const Monitor& monitor) {
@@ -293,21 +309,11 @@ PricedRow price_certificate(const PricedContainer& container, std::uint64_t coun
                 .container = container.name,
                 .triangles = container.triangles,
                 .ulp = container.ulp};
-  // Touching spheres in a cubic lattice, which touch flat walls as well; every other one larger by a few
-  // doubles, so that some overlap by that.
   constexpr double decisions_a_sphere = 8;
   const double wanted = std::max(1.0, static_cast<double>(count) / decisions_a_sphere);
-  const double edge = std::exp2(std::floor(std::log2(std::cbrt(container.exact().volume() / wanted))));
-  const Bounds<3> bounds = container.exact().bounds();
-  Spheres<dynamic> spheres(3);
-  Vector<dynamic> c(3);
-  for (c[2] = bounds.lower[2] + edge / 2; c[2] < bounds.upper[2]; c[2] += edge)
-    for (c[1] = bounds.lower[1] + edge / 2; c[1] < bounds.upper[1]; c[1] += edge)
-      for (c[0] = bounds.lower[0] + edge / 2; c[0] < bounds.upper[0]; c[0] += edge) {
-        const bool larger = spheres.size() % 2 == 1 && c[2] > bounds.center()[2];
-        if (container.at[filtered_level]->contains(Vector<3>(c), edge / 2))
-          spheres.push_back(c, larger ? std::nextafter(edge / 2, 1.0) : edge / 2);
-      }
+  double edge = std::exp2(std::floor(std::log2(std::cbrt(container.exact().volume() / wanted))));
+  Spheres<dynamic> spheres = touching_lattice(container, edge);
+  for (; spheres.size() == 0; edge /= 2) spheres = touching_lattice(container, edge / 2);
   Certificate certificates[2];
   for (const std::size_t level : {filtered_level, exact_level}) {
     const double start = thread_seconds();

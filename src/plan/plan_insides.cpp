@@ -1,0 +1,197 @@
+#include "plan/plan_insides.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "bernal/core/text.hpp"
+#include "bernal/scene/read_scene.hpp"
+#include "bernal/scene/sphere_classes.hpp"
+#include "bernal/scene/sphere_layers.hpp"
+#include "plan/fitting.hpp"
+#include "scene/insides.hpp"
+#include "scene/size_kinds.hpp"
+#include "scene/zones.hpp"
+
+namespace fs = std::filesystem;
+
+namespace bernal {
+namespace {
+
+/// Of what is held of a sphere inside: centre and radius.
+constexpr double bytes_of_sphere = 32;
+
+fs::path canonical_or_same(const fs::path& file) {
+  std::error_code unknown;
+  const fs::path meant = fs::canonical(file, unknown);
+  return unknown ? file : meant;
+}
+
+/// The radii of a class as the scene has them, and how many of its spheres there are likely to be.
+struct RadiiOfClass {
+  double least, usual, largest, count;
+};
+
+RadiiOfClass of_distribution(const SizeDistribution& radii, double count) {
+  constexpr double seldom = 1e-4;
+  return {std::max(radii.min(), radii.quantile(0)), radii.quantile(0.5),
+          std::isfinite(radii.max()) ? radii.max() : radii.quantile(1 - seldom), count};
+}
+
+RadiiOfClass radii_of_class(const Plan& plan, std::uint32_t of_class) {
+  const Scene& scene = plan.scene;
+  const auto* classes = std::get_if<Classes>(&scene.sizes);
+  if (scene.zones.empty() && classes && !(classes->names.empty() && classes->layers.empty())) {
+    const double radius = scene.scale * classes->values[of_class] / (scene.sizes_are_diameters ? 2 : 1);
+    std::vector<double> shares = shares_of_one_density(*classes);
+    double all = 0;
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      if (classes->basis != Basis::number) shares[k] /= std::pow(classes->values[k], 3);
+      all += shares[k];
+    }
+    return {radius, radius, radius, plan.expected_count * shares[of_class] / all};
+  }
+  if (scene.zones.empty()) return of_distribution(*plan.radii, plan.expected_count);
+  double count = 0;
+  for (const PlannedPart& part : plan.parts)
+    if (part.sphere_class == of_class) count += part.plan.expected_count;
+  const bool is_zone = of_class < scene.zones.size();
+  return of_distribution(
+      *radii_of(is_zone ? scene_of_zone(scene, scene.zones[of_class]) : scene_of_rest(scene)), count);
+}
+
+/// Where the innermost layer of a sphere of that radius ends.
+double ball_in(const Scene& scene, std::uint32_t of_class, double radius) {
+  if (layers_in(scene, of_class).empty()) return radius;
+  Packing one;
+  one.scene = scene;
+  one.seed = scene.seed;
+  one.spheres = Spheres<dynamic>(3);
+  one.spheres.push_back(Vector<dynamic>::Zero(3), radius);
+  if (!classes_of(scene).empty()) one.classes = {of_class};
+  return layers_of(one).of(0).front();
+}
+
+bool is_drawn(const Layer& layer) { return layer.thickness && layer.thickness->sd > 0; }
+
+/// Whether balls of a class differ from sphere to sphere.
+bool differ(const Scene& scene, std::uint32_t of_class, const RadiiOfClass& radii) {
+  const std::vector<Layer> layers = layers_in(scene, of_class);
+  if (layers.empty()) return radii.least < radii.largest;
+  if (is_drawn(layers.front())) return true;
+  if (layers.front().radius) return false;
+  return radii.least < radii.largest || std::ranges::any_of(layers, is_drawn);
+}
+
+/// Errors of what lies inside say so, at their own place where they have one.
+Plan plan_of_ball(const Plan& around, const Inside& inside, const std::string& name, double radius,
+                  const ScenesAround& scenes) {
+  const Unit unit = around.scene.unit;
+  try {
+    return build_inside(read_scene_inside(inside.scene, {radius, unit}), scenes);
+  } catch (const Error& error) {
+    const Location& at = error.location();
+    throw Error(error.code(),
+                fmt::format("{} (inside of {}, in a ball of radius {:.6g} {})", error.message(), name, radius,
+                            name_of(unit)),
+                at.line > 0 ? at : Location{inside.scene.string()});
+  }
+}
+
+void require_no_circle(const Inside& inside, const ScenesAround& around) {
+  const auto found = std::ranges::find(around, canonical_or_same(inside.scene));
+  if (found == around.end()) return;
+  throw Error(ErrorCode::bad_scene,
+              around.size() == 1 || found + 1 == around.end()
+                  ? fmt::format("{} would lie inside itself; name another scene", found->filename().string())
+                  : fmt::format("{} would lie inside itself, {} scenes further in; name another scene",
+                                found->filename().string(), around.end() - found),
+              inside.locations.of("scene"));
+}
+
+PlannedInside planned(const Plan& whole, const Inside& inside, const ScenesAround& around) {
+  const Scene& scene = whole.scene;
+  require_no_circle(inside, around);
+  const FilledClass of = filled_class(scene, inside);
+  const RadiiOfClass radii = radii_of_class(whole, of.of_class);
+  PlannedInside made{.of_class = of.of_class,
+                     .layer = of.layer,
+                     .name = of.name,
+                     .filled = std::max(1.0, std::round(radii.count)),
+                     .templates = inside.templates};
+  if (differ(scene, of.of_class, radii)) {
+    if (inside.templates)
+      throw Error(ErrorCode::bad_scene,
+                  fmt::format("the balls inside of {} have several radii, and each needs a packing of its "
+                              "own: leave \"templates\" out, or give all of them one radius",
+                              of.name),
+                  inside.locations.of("templates"));
+    plan_of_ball(whole, inside, of.name, ball_in(scene, of.of_class, radii.least), around);
+  }
+  made.ball = ball_in(scene, of.of_class, radii.usual);
+  made.plan = plan_of_ball(whole, inside, of.name, made.ball, around);
+  return made;
+}
+
+void add_costs(Plan& whole, const PlannedInside& made) {
+  const Plan& inside = made.plan;
+  const double packings = made.packings();
+  const auto about = [](double count) {
+    return fmt::format("about {}", grouped(static_cast<std::uint64_t>(std::llround(count))));
+  };
+  PlanItem item{
+      .name = fmt::format("inside {}", made.name),
+      .what = fmt::format(
+          "{} of {} spheres each, in balls of radius {:.6g} {}, {}; {} spheres stand for themselves",
+          packings == 1 ? "one packing" : grouped(static_cast<std::uint64_t>(packings)) + " packings",
+          about(inside.expected_count), made.ball, name_of(whole.scene.unit),
+          made.templates ? fmt::format("turned at random in {} spheres", about(made.filled))
+                         : "one in every sphere",
+          about(made.filled * expected_count_of_all_levels(inside))),
+      .cost = "O(packings N)"};
+  item.seconds = packings * inside.expected_seconds;
+  item.bytes = packings * bytes_of_sphere * inside.expected_count;
+  for (const PlanItem& deeper : inside.items)
+    if (deeper.name.starts_with("inside ")) item.bytes += packings * deeper.bytes;
+  whole.expected_seconds += item.seconds;
+  // One of them is packed once the spheres around are there.
+  whole.expected_memory_bytes =
+      std::max(whole.expected_memory_bytes, inside.expected_memory_bytes) + item.bytes;
+  whole.items.push_back(std::move(item));
+  if (whole.caution.empty() && !inside.caution.empty())
+    whole.caution = fmt::format("inside of {}: {}", made.name, inside.caution);
+  for (const std::string& hint : inside.hints)
+    whole.hints.push_back(fmt::format("inside of {}: {}", made.name, hint));
+}
+
+}  // namespace
+
+double expected_count_of_all_levels(const Plan& plan) {
+  double count = plan.expected_count;
+  for (const PlannedInside& inside : plan.insides)
+    count += inside.filled * expected_count_of_all_levels(inside.plan);
+  return count;
+}
+
+void plan_insides(Plan& whole, const ScenesAround& around) {
+  if (whole.scene.inside.empty()) return;
+  ScenesAround own = around;
+  if (!whole.scene.file.empty()) own.push_back(canonical_or_same(whole.scene.file));
+  for (const Inside& inside : whole.scene.inside) {
+    whole.insides.push_back(planned(whole, inside, own));
+    add_costs(whole, whole.insides.back());
+  }
+  require_memory(whole);
+}
+
+Plan plan_in_ball(const Plan& around, const PlannedInside& inside, double radius) {
+  const auto k = static_cast<std::size_t>(&inside - around.insides.data());
+  return plan_of_ball(around, around.scene.inside[k], inside.name, radius, {});
+}
+
+}  // namespace bernal

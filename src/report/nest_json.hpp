@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bernal/scene/packing.hpp"
+
+namespace bernal {
+
+/// The files of what lies inside the spheres of one class, by their names in the folder of the result.
+struct InsideFiles {
+  std::string folder = {};                 ///< that holds all of them
+  std::string scene = {};                  ///< of the first of the packings; empty where there is none
+  std::string table = {};                  ///< which packing each sphere holds, and how it is turned
+  std::vector<std::string> packings = {};  ///< a folder each, with a result
+};
+
+/// nest.json: a tree of what lies inside the spheres of a packing, a level below each other: class, layer,
+/// the ball in both units, counts and files; and the sums over all levels. One entry of `files` for each of
+/// `Packing::inside`.
+std::string nest_as_json(const Packing&, const std::vector<InsideFiles>& files);
+
+/// The files that such a text names. Throws Error{bad_packing} with the name of the file for what is none.
+std::vector<InsideFiles> files_in_nest(const std::string& json, const std::filesystem::path& file);
+
+}  // namespace bernal
