@@ -80,13 +80,14 @@ nlohmann::ordered_json table_as_json(const Prediction& prediction, const std::st
 Command design_command() {
   return {
       "design",
-      "Find the sizes that pack densest, or as densely as asked",
+      "Find the sizes that pack densest, or as densely as asked, and how dense layers need them",
       {},
-      {.text = "Each ends with a line \"diameter = { … }\" to paste under [spheres] of a scene. All of it "
+      {.text = "Each ends with a line to paste under [spheres] of a scene, \"diameter = { … }\" or "
+               "\"packing_fraction = …\". All of it "
                "by the rod model: see bernal predict for what that is worth.",
        .examples = {{"bernal design maximise --diameters 1,3,9", "how much of each packs densest: 0.8336"},
                     {"bernal design target --phi 0.7 --family lognormal", "how wide: sigma = 0.4619"},
                     {"bernal design best --min 1 --max 10", "the densest sizes between two limits"}}},
       {},
-      {maximise_command(), target_command(), best_command()}};
+      {maximise_command(), target_command(), best_command(), layer_command()}};
 }

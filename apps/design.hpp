@@ -14,6 +14,7 @@
 Command maximise_command();
 Command target_command();
 Command best_command();
+Command layer_command();
 
 /// A length or an amount in the fewest digits, at most ten, that are right to 1e-10.
 std::string number(double value);

@@ -4,7 +4,9 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,7 @@
 #include "bernal/report/describe.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
+#include "bernal/scene/nest.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/slabs/pack_in_slabs.hpp"
 #include "commands.hpp"
@@ -38,6 +41,11 @@ struct PackCall {
   double checkpoint_every = CheckpointOptions().every;  ///< seconds; 0: none
 };
 
+/// "1 packing", "1,200 packings".
+std::string in_words(std::uint64_t count, std::string_view thing) {
+  return fmt::format("{} {}{}", grouped(count), thing, count == 1 ? "" : "s");
+}
+
 void print_result(const Packing& packing, std::uint64_t spheres, double packing_fraction,
                   const WrittenPacking& written) {
   speak_of(packing.scene.dimension());
@@ -47,6 +55,11 @@ void print_result(const Packing& packing, std::uint64_t spheres, double packing_
       mass ? fmt::format(", {:.6g} kg", *mass) : std::string(), packing_fraction,
       packing.expected_packing_fraction, packing.seconds);
   print_layers(stderr, packing);
+  if (!packing.inside.empty())
+    for (const NestLevel& level : levels_of(packing) | std::views::drop(1))
+      say(stderr, "inside     {}: {} in {}, {} in all, packing fraction {:.4f} of their balls\n", level.name,
+          in_words(level.packings, "packing"), in_words(level.filled, "sphere"),
+          in_words(level.spheres, "sphere"), level.packing_fraction);
   const std::string end = fmt::format("{}: {}", name_of(packing.outcome), packing.reason);
   say(stderr, "outcome    {}\n", falls_short(packing.outcome) ? in_amber(stderr, end) : end);
   if (packing.cells) say(stderr, "cells      {}\n", cells_in_words(*packing.cells));
@@ -189,7 +202,12 @@ Command pack_command() {
                                "export read beside the spheres"},
                               {"report.json", "how it went, what was measured, the certificate"},
                               {"report.html", "the same to look at"},
-                              {"packing.svg", "a picture, in two and three dimensions"}}}},
+                              {"packing.svg", "a picture, in two and three dimensions"},
+                              {"nest.json",
+                               "of packings inside of spheres: the tree of them, their counts and folders"},
+                              {"inside/CLASS/",
+                               "in it a folder with a result for each of them, and rotations.csv: which of "
+                               "them each sphere holds, and the unit quaternion by which it is turned"}}}},
        .examples = {{"bernal pack data/scenes/hopper.toml", "results in hopper/"},
                     {"bernal pack bracket.stl --unit mm --diameter 2",
                      "no scene needed; results in bracket/"},

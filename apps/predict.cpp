@@ -11,6 +11,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/map/check_prediction.hpp"
+#include "bernal/plan/layer_shares.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "commands.hpp"
@@ -41,6 +42,7 @@ struct PredictAnswer {
   Prediction prediction;
   double seconds = 0;
   std::optional<double> viscosity;
+  std::vector<LayerShare> layers;
   std::optional<PredictionCheck> packed;
 };
 
@@ -112,6 +114,7 @@ PredictAnswer answer_to(PredictCall& call) {
   else
     answer.prediction =
         predict_packing_fraction(*radii_of(scene), call.rods, call.gap_factor.value_or(rod_gap_factor));
+  answer.layers = layer_shares(scene);
   answer.seconds = watch.seconds();
   if (call.solids) answer.viscosity = relative_viscosity(*call.solids, answer.prediction.phi, call.intrinsic);
   if (call.check) answer.packed = check(scene, call);
@@ -128,6 +131,15 @@ void print(const PredictionCheck& packed, double predicted) {
     fmt::print("outcome           {}: not as dense as it would become\n", name_of(packed.outcome));
 }
 
+void print(const std::vector<LayerShare>& layers, double phi) {
+  for (const auto& [of_class, name, material, share] : layers)
+    fmt::print("layer             {:.6f} of the spheres, {:.6f} of the packing: {}{}\n", share, share * phi,
+               plain_text(name, 100), of_class.empty() ? "" : " of " + plain_text(of_class, 100));
+  for (const LayerShare& of : by_material(layers))
+    fmt::print("material          {:.6f} of the spheres, {:.6f} of the packing: {}\n", of.share,
+               of.share * phi, plain_text(of.material, 100));
+}
+
 void print(const PredictCall& call, const PredictAnswer& answer) {
   const Prediction& p = answer.prediction;
   fmt::print("packing fraction  {:.6f}, {} without walls\n", p.phi,
@@ -140,6 +152,7 @@ void print(const PredictCall& call, const PredictAnswer& answer) {
   if (answer.viscosity)
     fmt::print("viscosity         {:.6g} times that of the liquid, at a volume fraction of solids of {:g}\n",
                *answer.viscosity, *call.solids);
+  print(answer.layers, p.phi);
   if (answer.packed) print(*answer.packed, p.phi);
 }
 
@@ -161,6 +174,17 @@ nlohmann::ordered_json as_json(const PredictCall& call, const PredictAnswer& ans
     json["solids"] = *call.solids;
     json["relative_viscosity"] = *answer.viscosity;
   }
+  for (const auto& [of_class, name, material, share] : answer.layers)
+    json["layers"].push_back(
+        {{"class", of_class.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(of_class)},
+         {"name", name},
+         {"material", material},
+         {"share", share},
+         {"packing_fraction", share * answer.prediction.phi}});
+  for (const LayerShare& of : by_material(answer.layers))
+    json["materials"].push_back({{"material", of.material},
+                                 {"share", of.share},
+                                 {"packing_fraction", of.share * answer.prediction.phi}});
   if (answer.packed)
     json["packed"] = {{"phi", answer.packed->phi},
                       {"phi_predicted_for_these_spheres", answer.packed->predicted},
@@ -195,7 +219,9 @@ Explanation predict_explanation() {
             .entries = {{"--lognormal, --classes",
                          "as often as needed: one mixture of all. Diameters and volumes are in any unit; "
                          "volumes are those of the spheres (or masses, of one material), not of the heap"},
-                        {"--scene", "the [spheres] of a scene, of any distribution"},
+                        {"--scene",
+                         "the [spheres] of a scene, of any distribution; where they have layers, also what "
+                         "each layer and each material takes up"},
                         {"--stdin", "a table, one population a line, '#' begins a comment"}}},
            {.title = "Lines of --stdin",
             .entries = {{"l", "d43 d32 volume: lognormal, volume- and surface-weighted mean diameter"},

@@ -42,6 +42,7 @@ Format nrrd_format();  // in images.cpp, with the next three
 Format vti_format();
 Format tiff_format();
 Format raw_format();
+Format flat_format();
 Format table_format();
 
 namespace {
@@ -52,7 +53,8 @@ const std::vector<Format>& formats() {
       extxyz_format(), gsd_format(),  pfc_format(),    mfix_format(),     openmc_format(),  serpent_format(),
       scone_format(),  mcnp_format(), povray_format(), npy_format(),      gmsh_format(),    step_format(),
       brep_format(),   stl_format(),  obj_format(),    ply_format(),      threemf_format(), gltf_format(),
-      snappy_format(), nrrd_format(), vti_format(),    tiff_format(),     raw_format(),     table_format()};
+      snappy_format(), nrrd_format(), vti_format(),    tiff_format(),     raw_format(),     flat_format(),
+      table_format()};
   return all;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "formats/layered.hpp"
 #include "formats/surface_file.hpp"
 #include "report/legend.hpp"
 #include "surfaces/icosphere.hpp"
@@ -50,7 +51,15 @@ float scale_of(const Surfaces& surfaces, std::uint32_t sphere, const FloatPoint&
   return scale > 0 && lies_within(center, piece.center, left) ? scale : 0;
 }
 
-Written plan(const Exported& file, const Surfaces& surfaces, const SizeScale& sizes) {
+/// How the balls of a file look, and what they are called.
+struct Look {
+  std::vector<std::uint32_t> material;  ///< of each ball, its place in `materials`
+  std::vector<std::string> materials;   ///< as JSON
+  std::vector<std::string> names;       ///< of each ball
+  std::string title;
+};
+
+Written plan(const Exported& file, const Surfaces& surfaces, const Look& look) {
   Written made;
   const bool may_instance =
       file.output.surface == SurfaceChoice::spheres || file.output.surface == SurfaceChoice::all;
@@ -64,7 +73,7 @@ Written plan(const Exported& file, const Surfaces& surfaces, const SizeScale& si
       made.triangles.push_back(i);
     }
   }
-  const auto colour_of = [&](std::uint32_t i) { return sizes.colour_class(file.spheres.r[i]); };
+  const auto colour_of = [&](std::uint32_t i) { return static_cast<int>(look.material[i]); };
   std::ranges::stable_sort(made.triangles, {}, colour_of);
   if (!made.instances.empty()) {
     made.icosphere = &icosphere(surfaces.spheres().frequency());
@@ -100,20 +109,60 @@ struct List {
   }
 };
 
-std::string material_of(const Colour& colour, double opacity) {
+std::string material_of(const Colour& colour, double opacity, const std::string& name = {}) {
   const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
   return fmt::format(
-      "{{\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{:.4g},{:.4g},{:.4g},{}],\"metallicFactor\":0,"
+      "{{{}\"pbrMetallicRoughness\":{{\"baseColorFactor\":[{:.4g},{:.4g},{:.4g},{}],\"metallicFactor\":0,"
       "\"roughnessFactor\":0.6}}{}}}",
-      linear(colour.red), linear(colour.green), linear(colour.blue), opacity,
-      opacity < 1 ? ",\"alphaMode\":\"BLEND\",\"doubleSided\":true" : "");
+      name.empty() ? "" : fmt::format("\"name\":\"{}\",", name), linear(colour.red), linear(colour.green),
+      linear(colour.blue), opacity, opacity < 1 ? ",\"alphaMode\":\"BLEND\",\"doubleSided\":true" : "");
+}
+
+/// Spheres in the colours of their sizes.
+Look look_of_sizes(const Exported& file) {
+  const SizeScale sizes(file.spheres.r);
+  Look look;
+  for (std::size_t i = 0; i < file.size(); ++i) {
+    look.material.push_back(static_cast<std::uint32_t>(sizes.colour_class(file.spheres.r[i])));
+    look.names.push_back(fmt::format("sphere_{}", i));
+  }
+  for (int c = 0; c < colour_classes; ++c)
+    look.materials.push_back(material_of(size_colour((c + 0.5) / colour_classes), 1));
+  return look;
+}
+
+/// A ball for each layer, in the colour of what it is made of, through which one sees what lies within. Those
+/// of the surfaces come first.
+Look look_of_layers(const Exported& file, Exported& balls) {
+  constexpr double veil = 0.3;
+  const LayeredSpheres layers = layered(file);
+  std::vector<bool> is_core(layers.kinds.size(), false);
+  balls.spheres = Spheres<dynamic>(file.dimension());
+  Look look;
+  const auto add = [&](std::size_t i, std::size_t k) {
+    for (std::size_t axis = 0; axis < file.spheres.x.size(); ++axis)
+      balls.spheres.x[axis].push_back(file.spheres.x[axis][i]);
+    balls.spheres.r.push_back(layers.outer[k]);
+    look.material.push_back(layers.kind[k]);
+    look.names.push_back(fmt::format("{}_{}", layers.kinds[layers.kind[k]].name, i));
+  };
+  for (std::size_t i = 0; i < file.size(); ++i) {
+    is_core[layers.kind[layers.first[i]]] = true;
+    add(i, layers.first[i + 1] - 1);
+  }
+  for (std::size_t i = 0; i < file.size(); ++i)
+    for (std::size_t k = layers.first[i]; k + 1 < layers.first[i + 1]; ++k) add(i, k);
+  for (std::size_t k = 0; k < layers.kinds.size(); ++k)
+    look.materials.push_back(
+        material_of(kind_colour(layers.kinds[k].material), is_core[k] ? 1 : veil, layers.kinds[k].name));
+  return look;
 }
 
 constexpr int array_buffer = 34962, element_buffer = 34963, as_float = 5126, as_uint32 = 5125;
 
 /// Source: Khronos Group, glTF 2.0 Specification (2021).
-std::string json_of(const Exported& file, const Surfaces& surfaces, const SizeScale& sizes,
-                    const Written& written, std::uint64_t& bytes) {
+std::string json_of(const Exported& file, const Surfaces& surfaces, const Look& look, const Written& written,
+                    std::uint64_t& bytes) {
   List views, accessors, meshes, materials, nodes;
   bytes = 0;
   const auto view = [&](std::uint64_t length, int target) {
@@ -138,8 +187,7 @@ std::string json_of(const Exported& file, const Surfaces& surfaces, const SizeSc
     return fmt::format("{{\"attributes\":{{\"POSITION\":{}}},\"indices\":{},\"material\":{}}}", position,
                        index, material);
   };
-  for (int c = 0; c < colour_classes; ++c)
-    materials.add(material_of(size_colour((c + 0.5) / colour_classes), 1));
+  for (const std::string& material : look.materials) materials.add(material);
   // Glass if spheres are inside, else an opaque surface.
   const bool glass = file.output.surface == SurfaceChoice::all;
   materials.add(material_of({0.62, 0.70, 0.80}, glass ? 0.2 : 1.0));
@@ -158,18 +206,16 @@ std::string json_of(const Exported& file, const Surfaces& surfaces, const SizeSc
     const std::size_t position = positions(written.corners.size(), low, high);
     const std::uint64_t count = 3 * written.icosphere->triangles.size();
     const std::size_t index = indices(view(4 * count, element_buffer), 0, count);
-    std::array<std::size_t, colour_classes> mesh_of_class{};
-    std::array<bool, colour_classes> made{};
+    std::vector<std::optional<std::size_t>> mesh_of(look.materials.size());
     for (std::size_t n = 0; n < written.instances.size(); ++n) {
       const std::uint32_t i = written.instances[n];
-      const auto c = static_cast<std::size_t>(sizes.colour_class(file.spheres.r[i]));
-      if (!made[c])
-        mesh_of_class[c] = meshes.add(fmt::format("{{\"primitives\":[{}]}}", primitive(position, index, c)));
-      made[c] = true;
+      const std::uint32_t c = look.material[i];
+      if (!mesh_of[c])
+        mesh_of[c] = meshes.add(fmt::format("{{\"primitives\":[{}]}}", primitive(position, index, c)));
       const FloatPoint p = center_of(file, i);
-      add_node(fmt::format(
-          "{{\"name\":\"sphere_{}\",\"mesh\":{},\"translation\":[{},{},{}],\"scale\":[{},{},{}]}}", i,
-          mesh_of_class[c], p[0], p[1], p[2], written.scales[n], written.scales[n], written.scales[n]));
+      add_node(fmt::format("{{\"name\":\"{}\",\"mesh\":{},\"translation\":[{},{},{}],\"scale\":[{},{},{}]}}",
+                           look.names[i], *mesh_of[c], p[0], p[1], p[2], written.scales[n], written.scales[n],
+                           written.scales[n]));
     }
   }
   if (written.indices > 0) {
@@ -178,9 +224,9 @@ std::string json_of(const Exported& file, const Surfaces& surfaces, const SizeSc
     std::string primitives;
     for (const Primitive& part : written.primitives) {
       if (!primitives.empty()) primitives += ',';
-      primitives +=
-          primitive(position, indices(at, part.first, part.indices),
-                    static_cast<std::size_t>(part.colour_class < 0 ? colour_classes : part.colour_class));
+      primitives += primitive(
+          position, indices(at, part.first, part.indices),
+          part.colour_class < 0 ? look.materials.size() : static_cast<std::size_t>(part.colour_class));
     }
     const std::size_t mesh = meshes.add(fmt::format("{{\"primitives\":[{}]}}", primitives));
     add_node(fmt::format("{{\"name\":\"{}\",\"mesh\":{}}}",
@@ -192,7 +238,7 @@ std::string json_of(const Exported& file, const Surfaces& surfaces, const SizeSc
   std::string json = fmt::format(
       "{{\"asset\":{{\"version\":\"2.0\",\"generator\":\"{}; lengths in m\"}},\n\"scene\":0,"
       "\"scenes\":[{{\"nodes\":[0]}}],\n\"nodes\":[{}{}]",
-      file.title(), root, nodes.text);
+      look.title, root, nodes.text);
   if (meshes.size > 0)
     json += fmt::format(
         ",\n\"meshes\":[{}],\n\"materials\":[{}],\n\"accessors\":[{}],\n\"bufferViews\":[{}],\n"
@@ -203,12 +249,16 @@ std::string json_of(const Exported& file, const Surfaces& surfaces, const SizeSc
   return json;
 }
 
-std::string write_gltf_file(const Exported& file, StagedFolder& staged) {
-  const Surfaces surfaces = surfaces_of(file);
-  const SizeScale sizes(file.spheres.r);
-  const Written written = plan(file, surfaces, sizes);
+std::string write_gltf_file(const Exported& given, StagedFolder& staged) {
+  const bool by_layers = shows_layers(given) && given.output.surface == SurfaceChoice::spheres;
+  Exported file = given;
+  Look look = by_layers ? look_of_layers(given, file) : look_of_sizes(given);
+  look.title = given.title();
+  const Surfaces surfaces(file.spheres, file.domain, file.output.deflection, file.output.surface,
+                          file.monitor, {given.size(), false});
+  const Written written = plan(file, surfaces, look);
   std::uint64_t bytes = 0;
-  const std::string json = json_of(file, surfaces, sizes, written, bytes);
+  const std::string json = json_of(file, surfaces, look, written, bytes);
   const std::uint64_t length = 12 + 8 + json.size() + (bytes > 0 ? 8 + bytes : 0);
   if (length > 0xffff'ffffU)
     throw Error(ErrorCode::bad_argument, "a .glb file ends at 4 GiB; allow a larger deflection",
@@ -232,7 +282,7 @@ std::string write_gltf_file(const Exported& file, StagedFolder& staged) {
     }
   }
   out.close();
-  return surfaces.note() + "; y points up";
+  return surfaces.note() + (by_layers ? "; a mesh a layer" : "") + "; y points up";
 }
 
 }  // namespace
@@ -240,8 +290,9 @@ std::string write_gltf_file(const Exported& file, StagedFolder& staged) {
 Format gltf_format() {
   Format made = surface_format(
       "gltf",
-      "scene for viewers and Blender, binary, coloured by size; an icosphere that nodes scale and move",
-      "spheres.glb", write_gltf_file);
+      "scene for viewers and Blender, binary, coloured by size, or by layer; an icosphere that nodes "
+      "scale and move",
+      "spheres.glb", write_gltf_file, {"layers"});
   std::erase(made.keys, "unit");
   made.unit = Unit::m;
   return made;

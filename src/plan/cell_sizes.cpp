@@ -87,7 +87,10 @@ Scene scene_of_radii(const Scene& scene, std::vector<double> radii) {
   Scene made = scene;
   made.cells.reset();
   made.target.count = static_cast<std::int64_t>(radii.size());
-  if (!box_follows(scene)) made.target.packing_fraction.reset();
+  if (!box_follows(scene)) {
+    made.target.packing_fraction.reset();
+    made.target.predicted = false;
+  }
   made.draw.reset();
   made.sizes_are_diameters = false;
   made.sizes = ListedSizes{.values = std::move(radii)};

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -220,29 +221,91 @@ struct MakeDomain {
   }
 };
 
-/// What remains of the container. Where a note stands, what is done is added to it.
-Domain without_obstacles(const Domain& whole, Scene& scene, std::string& notes, std::string& caution) {
-  const auto add = [](std::string& text, const std::string& more) {
-    if (!more.empty()) text.append(text.empty() ? "" : "; ").append(more);
+/// The part of a profile with r >= `radius`.
+std::vector<Vector<2>> beyond(const std::vector<Vector<2>>& profile, double radius) {
+  std::vector<Vector<2>> part;
+  const auto add = [&](const Vector<2>& p) {
+    if (part.empty() || (p != part.back() && p != part.front())) part.push_back(p);
   };
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    const Vector<2>&a = profile[k], &b = profile[(k + 1) % profile.size()];
+    if (a[0] >= radius) add(a);
+    if ((a[0] - radius) * (b[0] - radius) < 0)
+      add({radius, a[1] + (b[1] - a[1]) * ((radius - a[0]) / (b[0] - a[0]))});
+  }
+  return part;
+}
+
+/// What a cylinder about the same axis, to rounding, leaves of a solid of revolution that it pierces from end
+/// to end: another one. Nothing where it is otherwise, or what is left has several pieces.
+std::optional<Domain> without_core(const Domain& whole, const SceneContainer& obstacle) {
+  constexpr double rounding = 1e-12;
+  const auto* core = std::get_if<Cylinder>(&obstacle);
+  if (!core || core->periodic || obstacle.rounding > 0) return {};
+  Revolved solid;
+  if (const auto* cylinder = std::get_if<Cylinder>(&whole); cylinder && !cylinder->periodic)
+    solid = {cylinder->base,
+             cylinder->axis,
+             {{0, 0}, {cylinder->radius, 0}, {cylinder->radius, cylinder->height}, {0, cylinder->height}}};
+  else if (const auto* revolved = std::get_if<Revolved>(&whole))
+    solid = *revolved;
+  else
+    return {};
+  const Vector<3> axis = solid.axis.normalized(), along = core->axis.normalized();
+  const Vector<3> base = core->base - solid.base;
+  const double from = base.dot(axis), to = from + core->height * along.dot(axis);
+  if (axis.cross(along).norm() > rounding || (base - from * axis).norm() > rounding * core->radius) return {};
+  for (const Vector<2>& p : solid.profile)
+    if (p[1] < std::min(from, to) || p[1] > std::max(from, to)) return {};
+  solid.profile = beyond(solid.profile, core->radius);
+  if (solid.profile.size() < 3) return {};
+  try {
+    require_profile(solid);
+  } catch (const Error&) {
+    return {};
+  }
+  return solid;
+}
+
+void add_note(std::string& text, const std::string& more) {
+  if (!more.empty()) text.append(text.empty() ? "" : "; ").append(more);
+}
+
+std::string name_of_solid(const SceneContainer& solid, std::size_t number) {
+  const auto* file = std::get_if<MeshFile>(&solid);
+  return file ? file->file.filename().string()
+              : fmt::format("obstacle {} ({})", number, schema::entry_of(solid).name);
+}
+
+/// What remains of the container. Where a note stands, what is done is added to it.
+Domain without_obstacles(Domain whole, Scene& scene, std::string& notes, std::string& caution) {
+  std::vector<std::pair<SceneContainer*, std::string>> others;
+  std::size_t number = 0;
+  for (SceneContainer& solid : scene.container.obstacles) {
+    const std::string name = name_of_solid(solid, number += !std::holds_alternative<MeshFile>(solid));
+    if (std::optional<Domain> rest = without_core(whole, solid)) {
+      whole = std::move(*rest);
+      add_note(notes, fmt::format("took out {} around the axis", name));
+    } else {
+      others.emplace_back(&solid, name);
+    }
+  }
+  if (others.empty()) return whole;
   Flattened walls = flattened(whole, RoundAs::within);
   double deviation = walls.deviation;
-  int number = 0;
-  for (SceneContainer& solid : scene.container.obstacles) {
-    const auto* file = std::get_if<MeshFile>(&solid);
-    const std::string name = file ? file->file.filename().string()
-                                  : fmt::format("obstacle {} ({})", ++number, schema::entry_of(solid).name);
+  for (const auto& [solid, name] : others) {
     std::string notes_of_file, caution_of_file;
-    const Flattened obstacle = flattened(
-        std::visit(MakeDomain{scene, solid, notes_of_file, caution_of_file}, solid), RoundAs::circumscribed);
+    const Flattened obstacle =
+        flattened(std::visit(MakeDomain{scene, *solid, notes_of_file, caution_of_file}, *solid),
+                  RoundAs::circumscribed);
     try {
       cad::take_out(walls.mesh, obstacle.mesh, name);
     } catch (const OptionError& error) {
       throw Error(error.code(), error.what(), scene.container.locations.of("obstacles"));
     }
     deviation = std::max(deviation, obstacle.deviation);
-    add(notes, fmt::format("took out {} of {} faces", name, obstacle.mesh.triangles.size()));
-    if (!caution_of_file.empty()) add(caution, fmt::format("{}: {}", name, caution_of_file));
+    add_note(notes, fmt::format("took out {} of {} faces", name, obstacle.mesh.triangles.size()));
+    if (!caution_of_file.empty()) add_note(caution, fmt::format("{}: {}", name, caution_of_file));
   }
   cad::Triangles rest{.mesh = std::move(walls.mesh)};
   const MeshReport report = cad::diagnose_mesh(rest);
@@ -253,8 +316,8 @@ Domain without_obstacles(const Domain& whole, Scene& scene, std::string& notes, 
                             fmt::join(report.problems, ", ")),
                 scene.container.locations.of("obstacles"));
   if (deviation > 0)
-    add(notes, fmt::format("round walls are flat faces on their inner side, off by {:.2g} {} at most",
-                           deviation, name_of(scene.unit)));
+    add_note(notes, fmt::format("round walls are flat faces on their inner side, off by {:.2g} {} at most",
+                                deviation, name_of(scene.unit)));
   return std::move(rest.mesh);
 }
 
@@ -264,7 +327,7 @@ Domain domain_of(Scene& scene, std::string& notes, std::string& caution) {
   SceneContainer& container = scene.container;
   Domain whole = std::visit(MakeDomain{scene, container, notes, caution}, container);
   if (container.obstacles.empty()) return whole;
-  return without_obstacles(whole, scene, notes, caution);
+  return without_obstacles(std::move(whole), scene, notes, caution);
 }
 
 Domain domain_of(const Scene& scene) {

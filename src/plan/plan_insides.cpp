@@ -138,31 +138,54 @@ PlannedInside planned(const Plan& whole, const Inside& inside, const ScenesAroun
   return made;
 }
 
+/// What packing them brings, with what the spheres around them bring.
+void add_items(Plan& whole, const Plan& inside, double packings) {
+  for (PlanItem item : inside.items) {
+    std::erase(whole.absent, item.name);
+    item.seconds *= packings;
+    const auto same = std::ranges::find(whole.items, item.name, &PlanItem::name);
+    if (same == whole.items.end()) {
+      whole.items.push_back(std::move(item));
+      continue;
+    }
+    same->seconds += item.seconds;
+    same->bytes = std::max(same->bytes, item.bytes);
+    same->if_needed = same->if_needed && item.if_needed;
+  }
+  std::erase(whole.absent, inside_effect);
+}
+
+/// With what is held of those that lie further in.
+double expected_count_of_packings(const Plan& plan) {
+  double count = plan.expected_count;
+  for (const PlannedInside& inside : plan.insides)
+    count += inside.packings() * expected_count_of_packings(inside.plan);
+  return count;
+}
+
 void add_costs(Plan& whole, const PlannedInside& made) {
   const Plan& inside = made.plan;
   const double packings = made.packings();
   const auto about = [](double count) {
     return fmt::format("about {}", grouped(static_cast<std::uint64_t>(std::llround(count))));
   };
-  PlanItem item{
-      .name = fmt::format("inside {}", made.name),
-      .what = fmt::format(
-          "{} of {} spheres each, in balls of radius {:.6g} {}, {}; {} spheres stand for themselves",
-          packings == 1 ? "one packing" : grouped(static_cast<std::uint64_t>(packings)) + " packings",
-          about(inside.expected_count), made.ball, name_of(whole.scene.unit),
-          made.templates ? fmt::format("turned at random in {} spheres", about(made.filled))
-                         : "one in every sphere",
-          about(made.filled * expected_count_of_all_levels(inside))),
-      .cost = "O(packings N)"};
-  item.seconds = packings * inside.expected_seconds;
-  item.bytes = packings * bytes_of_sphere * inside.expected_count;
-  for (const PlanItem& deeper : inside.items)
-    if (deeper.name.starts_with("inside ")) item.bytes += packings * deeper.bytes;
-  whole.expected_seconds += item.seconds;
-  // One of them is packed once the spheres around are there.
-  whole.expected_memory_bytes =
-      std::max(whole.expected_memory_bytes, inside.expected_memory_bytes) + item.bytes;
-  whole.items.push_back(std::move(item));
+  const double held = packings * bytes_of_sphere * expected_count_of_packings(inside);
+  add_items(whole, inside, packings);
+  whole.items.push_back(
+      {.name = inside_effect,
+       .what = fmt::format(
+           "{} of {} spheres each, in balls of radius {:.6g} {}, {} ({}); {} spheres stand for themselves",
+           packings == 1 ? "one packing" : grouped(static_cast<std::uint64_t>(packings)) + " packings",
+           about(inside.expected_count), made.ball, name_of(whole.scene.unit),
+           made.templates ? fmt::format("turned at random in {} spheres", about(made.filled))
+                          : "one in every sphere",
+           made.name, about(made.filled * expected_count_of_all_levels(inside))),
+       .cost = "O(packings N)",
+       .seconds = packings * inside.expected_seconds,
+       .bytes = held,
+       .part = true});
+  whole.expected_seconds += packings * inside.expected_seconds;
+  whole.expected_memory_bytes += inside.expected_memory_bytes + held;  // of one that is packed, and of all
   if (whole.caution.empty() && !inside.caution.empty())
     whole.caution = fmt::format("inside of {}: {}", made.name, inside.caution);
   for (const std::string& hint : inside.hints)

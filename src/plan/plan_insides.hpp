@@ -6,6 +6,9 @@
 
 namespace bernal {
 
+/// What packing inside of spheres is called among the effects of a run.
+inline constexpr const char* inside_effect = "inside";
+
 /// The scenes around one that lies inside, from the outermost on, as `canonical` has them.
 using ScenesAround = std::vector<std::filesystem::path>;
 

@@ -1,4 +1,5 @@
 #include "plan/price_effects.hpp"
+#include "plan/plan_insides.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -141,7 +142,8 @@ void price_effects(Plan& plan) {
   const auto is_planned = [&](const std::string& name) {
     return std::ranges::find(plan.items, name, &PlanItem::name) != plan.items.end();
   };
-  std::vector<std::string> all = {"start", "walls", std::string(exact_walls_effect), cells_effect};
+  std::vector<std::string> all = {"start", "walls", std::string(exact_walls_effect), cells_effect,
+                                  inside_effect};
   for (const StageEntry* stage : stage_entries())
     all.insert(all.end(), stage->may_bring.begin(), stage->may_bring.end());
   for (const std::string& name : all)

@@ -10,6 +10,7 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/report/picture.hpp"
 #include "bernal/report/section.hpp"
+#include "bernal/scene/nest.hpp"
 #include "bernal/scene/packing_bytes.hpp"
 #include "bernal/scene/sphere_classes.hpp"
 #include "bernal/scene/sphere_layers.hpp"
@@ -81,6 +82,41 @@ py::list layers_of_packing(const Packing& packing) {
                           py::arg("outer") = copy_of(outer)));
     }
   }
+  return all;
+}
+
+/// What lies inside the spheres of each class that is filled.
+py::list insides_of_packing(const Packing& packing) {
+  const std::vector<SphereClass> classes = classes_of(packing.scene);
+  const std::vector<std::vector<Layer>> layers = layers_by_class(packing.scene);
+  py::list all;
+  for (const PackingsInside& inside : packing.inside) {
+    const bool has_layers = inside.of_class < layers.size() && !layers[inside.of_class].empty();
+    py::list templates;
+    for (const auto& made : inside.templates)
+      templates.append(std::const_pointer_cast<Packing>(made));  // which Python cannot change
+    py::array_t<double> rotations(
+        std::vector<py::ssize_t>{static_cast<py::ssize_t>(inside.rotations.size()), 4});
+    double* q = rotations.mutable_data();
+    for (const auto& rotation : inside.rotations) q = std::copy(rotation.begin(), rotation.end(), q);
+    all.append(py::dict(
+        py::arg("class") = inside.of_class < classes.size() ? classes[inside.of_class].name : "spheres",
+        py::arg("layer") = has_layers ? layers[inside.of_class][inside.layer].name : std::string(),
+        py::arg("templates") = templates, py::arg("spheres") = copy_of(inside.spheres),
+        py::arg("which") = copy_of(inside.which), py::arg("rotations") = rotations));
+  }
+  return all;
+}
+
+py::list levels_of_packing(const Packing& packing) {
+  py::list all;
+  for (const NestLevel& level : levels_of(packing))
+    all.append(py::dict(py::arg("name") = level.name, py::arg("depth") = level.depth,
+                        py::arg("packings") = level.packings, py::arg("packed") = level.packed,
+                        py::arg("filled") = level.filled, py::arg("spheres") = level.spheres,
+                        py::arg("ball") = level.ball, py::arg("unit") = name_of(level.unit),
+                        py::arg("packing_fraction") = level.packing_fraction,
+                        py::arg("share") = level.share));
   return all;
 }
 
@@ -250,6 +286,8 @@ void bind_packing(py::module_& module) {
                                         packing.weights.data());
            })
       .def("layers", &layers_of_packing)
+      .def("inside", &insides_of_packing)
+      .def("levels", &levels_of_packing)
       .def("history", &history_of)
       .def("effects", &effects_of)
       .def("bounds", &bounds_of_domain)

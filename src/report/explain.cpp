@@ -94,6 +94,10 @@ std::string explain(const Plan& plan) {
         scene.target.bed.top == BedTarget::Top::heap ? "tip" : "surface", bed->height, name_of(scene.unit));
   text += fmt::format("expected   about {:.3g} spheres, packing fraction {:.3f}\n", plan.expected_count,
                       plan.expected_packing_fraction);
+  if (!plan.insides.empty())
+    text += fmt::format(
+        "           with what lies inside of them about {:.4g} spheres, which stand for themselves\n",
+        expected_count_of_all_levels(plan));
   text += fmt::format("           about {} to pack them on one core, {} of memory\n\n",
                       duration_in_words(plan.expected_seconds), bytes_in_words(plan.expected_memory_bytes));
 

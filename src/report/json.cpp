@@ -6,6 +6,7 @@
 #include "files/seal.hpp"
 #include "report/class_amounts.hpp"
 #include "report/measured_json.hpp"
+#include "report/nest_levels.hpp"
 #include "report/report.hpp"
 #include "scene/scene_entries.hpp"
 
@@ -146,12 +147,14 @@ Json run_json(const Packing& packing, std::uint64_t spheres, double packing_frac
                {"mass", mass ? Json(*mass) : Json()},
                {"classes", classes_json(packing)},
                {"bulk_density", packing.bulk_density},
+               {"cells", packing.cells},
                {"expected_phi", packing.expected_packing_fraction},
                {"expected_phi_of_sizes", packing.expected_of_sizes},
                {"caution", packing.caution.empty() ? Json() : Json(packing.caution)},
                {"notes", packing.hints},
                {"size_scale", packing.size_scale}};
   json.update(layers_json(layers));
+  json["levels"] = packing.inside.empty() ? Json::array() : levels_json(packing);
   return json;
 }
 

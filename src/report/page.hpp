@@ -9,6 +9,7 @@ namespace bernal {
 // Sections of report.html.
 void write_sizes(Page&, const Report&);
 void write_layers(Page&, const Report&);
+void write_levels(Page&, const Report&);
 void write_contacts(Page&, const Report&);
 void write_chambers(Page&, const Report&);
 void write_bed(Page&, const Report&);

@@ -9,6 +9,21 @@
 
 namespace bernal {
 
+/// What lies inside spheres, a level below each other.
+static nlohmann::ordered_json insides_of(const Plan& plan) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const PlannedInside& inside : plan.insides)
+    all.push_back({{"class", inside.name},
+                   {"ball", inside.ball},
+                   {"filled", inside.filled},
+                   {"packings", inside.packings()},
+                   {"count", inside.plan.expected_count},
+                   {"packing_fraction", inside.plan.expected_packing_fraction},
+                   {"unit", name_of(inside.plan.scene.unit)},
+                   {"inside", insides_of(inside.plan)}});
+  return all;
+}
+
 std::string plan_as_json(const Plan& plan) {
   using nlohmann::ordered_json;
   ordered_json container = {{"kind", schema::word_of(plan.scene.container, plan.domain)},
@@ -69,7 +84,9 @@ std::string plan_as_json(const Plan& plan) {
         {"packing_fraction", plan.expected_packing_fraction},
         {"bed", bed},
         {"seconds", plan.expected_seconds},
-        {"memory_bytes", plan.expected_memory_bytes}}},
+        {"memory_bytes", plan.expected_memory_bytes},
+        {"count_of_all_levels", expected_count_of_all_levels(plan)},
+        {"inside", insides_of(plan)}}},
       {"caution", plan.caution.empty() ? ordered_json() : ordered_json(plan.caution)},
       {"notes", plan.hints},
       {"outputs", outputs},

@@ -295,6 +295,7 @@ std::string html_of(const Report& report, const Pictures& pictures, std::string_
   write_bed(page, report);
   write_sizes(page, report);
   write_layers(page, report);
+  write_levels(page, report);
   write_contacts(page, report);
   write_chambers(page, report);
   write_walls(page, report);

@@ -29,6 +29,9 @@ namespace {
 constexpr std::size_t spheres_a_mean = 100;
 /// A round that brings the distribution less than this nearer is the last.
 constexpr double worth_a_round = 0.002;
+/// Of the packing fraction, with which a box that did not take all spheres is tried again, and how often.
+constexpr double share_after_shrink = 0.98;
+constexpr int most_shrinks = 8;
 /// Volumes that differ by less are the same.
 constexpr double same_volume = 1e-8;
 
@@ -114,12 +117,17 @@ class CellRun {
   }
 
  private:
+  /// Into a box of given size what fits: smaller spheres, where nobody asks how much of it they fill.
   Packing pack() {
     RunOptions options = options_;
     options.checkpoints = {};
-    Packing packing = run(made_plan(scene_of_radii(plan_.scene, radii_)), options);
-    stopped_ = packing.outcome == Outcome::cancelled;
-    return packing;
+    const bool may_shrink = !plan_.box_follows && !plan_.scene.target.packing_fraction;
+    for (int tries = 0;; ++tries) {
+      Packing packing = run(made_plan(scene_of_radii(plan_.scene, radii_)), options);
+      stopped_ = packing.outcome == Outcome::cancelled;
+      if (stopped_ || is_packed(packing.outcome) || !may_shrink || tries == most_shrinks) return packing;
+      for (double& r : radii_) r *= std::cbrt(share_after_shrink);
+    }
   }
 
   bool can_have_cells(const Packing& packing) const {
@@ -134,6 +142,7 @@ class CellRun {
     of_radii_ = by_rank(packing.spheres.r);
     scale_ = scale_in(packing);
     if (best_ && distance >= best_distance_) return;
+    if (best_ && is_packed(best_->outcome) && !is_packed(packing.outcome)) return;
     best_distance_ = distance;
     best_ = std::move(packing);
   }

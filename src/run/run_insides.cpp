@@ -24,8 +24,10 @@
 #include "bernal/core/text.hpp"
 #include "bernal/core/unit.hpp"
 #include "bernal/scene/sphere_layers.hpp"
+#include "core/made.hpp"
 #include "plan/plan_insides.hpp"
 #include "run/begin_packing.hpp"
+#include "work/effect_log.hpp"
 
 namespace bernal {
 namespace {
@@ -76,6 +78,7 @@ class Filling {
     std::atomic<std::size_t> next = 0, ended = 0;
     std::exception_ptr thrown;
     std::mutex turn;
+    tell(0, 0);
     const auto work = [&](const std::function<void(const Progress&)>& of_one) {
       try {
         for (std::size_t t; !options_.monitor.stop() && (t = next++) < packings; ++ended)
@@ -156,6 +159,7 @@ class Filling {
   const std::size_t k_;
   const RunOptions& options_;
   const Packing& packing_;
+  const Made made_{inside_effect};
   std::vector<double> balls_;  // in which they are to lie, one a filled sphere
   PackingsInside filled_;
 };
@@ -188,6 +192,18 @@ void take_outcome(Packing& whole, const PackingsInside& filled, std::size_t pack
                   least == most ? grouped(most) : grouped(least) + " to " + grouped(most));
 }
 
+/// What the packings inside brought, with what the spheres around them brought.
+void add_effects(std::vector<Effect>& effects, const PackingsInside& inside) {
+  for (const auto& packing : inside.templates)
+    for (const Effect& effect : packing->effects) {
+      const auto same = std::ranges::find(effects, effect.name, &Effect::name);
+      if (same == effects.end())
+        effects.push_back(effect);
+      else
+        *same += effect;
+    }
+}
+
 /// Of the time of a run, what is gone before the k-th of its insides; all of it for their number.
 double share_before(const Plan& plan, std::size_t k) {
   double inside = 0, before = 0;
@@ -211,6 +227,7 @@ Packing run_with_insides(const Plan& plan, const RunOptions& options) {
   };
   Packing packing = run_spheres(plan, of_spheres);
   const Stopwatch whole;
+  Effect inside_them{inside_effect, 0, 0};
   const SphereLayers layers = layers_of(packing);
   for (std::size_t k = 0; k < plan.insides.size(); ++k) {
     const Stopwatch watch;
@@ -225,8 +242,10 @@ Packing run_with_insides(const Plan& plan, const RunOptions& options) {
     });
     packing.inside.push_back(filling.take());
     take_outcome(packing, packing.inside.back(), packings, plan.insides[k].name);
-    packing.effects.push_back({activity, packings, watch.seconds()});
+    add_effects(packing.effects, packing.inside.back());
+    inside_them += Effect{"", packings, watch.seconds()};
   }
+  if (inside_them.calls > 0) packing.effects.push_back(inside_them);
   packing.seconds += whole.seconds();
   return packing;
 }

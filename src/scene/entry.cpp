@@ -91,7 +91,8 @@ static void check_tables(const Key& key, const std::vector<Tables>& lists, const
     for (std::size_t k = 0; k < lists[i].items.size(); ++k) {
       const Entry& entry = *lists[i].of;
       void* const options = lists[i].items[k].get();
-      const Locations unkept{.whole = section.locations.of(key.name), .keys = {}};
+      Locations unkept{.whole = section.locations.of(key.name), .keys = {}};
+      for (const Key& of : entry.keys) unkept.keys.emplace(of.name, unkept.whole);  // see `TableReader`
       check(entry, options,
             {name_of_table(key, i, k, section.name), entry.locations ? *entry.locations(options) : unkept});
     }

@@ -12,6 +12,9 @@ namespace bernal {
 std::string place_layers(const std::vector<Layer>& layers, double radius, std::span<const double> thickness,
                          std::span<double> outer);
 
+/// The thickness that is drawn at u in (0, 1): the quantile of the cut normal distribution.
+double thickness_at(const Normal& thickness, double u);
+
 /// Throws Error{bad_scene} for layers that the spheres of a scene cannot have: by its dimension, by what else
 /// it says, or by the sizes that it gives one by one.
 void require_layers(const Scene&);

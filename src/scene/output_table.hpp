@@ -18,9 +18,9 @@ inline double usual_density(const Scene& scene) {
 }
 
 /// The files of a result, all that it ever has.
-inline constexpr std::array<std::string_view, 12> names_of_result = {
-    "scene.toml",  "spheres.csv", "spheres.npy", "classes.npy", "weights.npy",   "spheres.vtp",
-    "report.json", "report.html", "packing.svg", "section.svg", "container.off", "layers.csv"};
+inline constexpr std::array<std::string_view, 13> names_of_result = {
+    "scene.toml",  "spheres.csv", "spheres.npy", "classes.npy",   "weights.npy", "spheres.vtp", "report.json",
+    "report.html", "packing.svg", "section.svg", "container.off", "layers.csv",  "nest.json"};
 
 /// A format of other programs as a scene knows it: what it can be told, and what its file is.
 struct OutputTable {

@@ -53,6 +53,14 @@ static void archive(Archive& a, Domain& domain) {
 
 static void archive(Archive& a, Packing& packing);
 
+static void archive(Archive& a, PackingsInside& inside) {
+  a(inside.of_class, inside.layer, inside.spheres, inside.which, inside.rotations);
+  std::uint64_t count = inside.templates.size();
+  a(count);
+  inside.templates.resize(count);
+  for (std::shared_ptr<const Packing>& packing : inside.templates) archive_shared(a, packing);
+}
+
 /// As TOML, and what does not stand in that: the names of files as they are, and what a program gave in place
 /// of files. The scene of an imported packing has no sizes, no start and no stages; reading TOML needs the
 /// first two and completes the last.
@@ -85,6 +93,7 @@ static void archive(Archive& a, Scene& scene) {
       *name = names.front();
       names.erase(names.begin());
     }
+    for (std::size_t k = 0; k < scene.inside.size(); ++k) scene.inside[k].scene = names[k];
     for (; count > 0; --count) {
       std::string name;
       std::shared_ptr<const PolygonSurface> surface;
@@ -106,7 +115,7 @@ static void archive(Archive& a, Scene& scene) {
 }
 
 static void archive(Archive& a, Packing& p) {
-  a(p.spheres, p.classes, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.hints,
+  a(p.spheres, p.classes, p.inside, p.domain, p.volume, p.expected_packing_fraction, p.caution, p.hints,
     p.expected_of_sizes, p.bulk_density, p.size_scale, p.scene, p.seed, p.threads, p.program, p.outcome,
     p.reason, p.effects, p.history, p.seconds, p.resumed, p.weights, p.cells);
 }

@@ -12,7 +12,7 @@ namespace {
 
 /// Names of files are the strings of these keys, wherever they stand.
 bool names_files(std::string_view key) {
-  return key == "file" || key == "start" || key == "obstacles" || key == "mesh";
+  return key == "file" || key == "start" || key == "obstacles" || key == "mesh" || key == "scene";
 }
 
 void add_named_files(const toml::node& node, bool here, std::vector<std::string>& names) {

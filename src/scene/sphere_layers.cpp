@@ -64,6 +64,8 @@ struct ClassLayers {
 
 }  // namespace
 
+double thickness_at(const Normal& thickness, double u) { return DrawnThickness(thickness).at(u); }
+
 std::string place_layers(const std::vector<Layer>& layers, double radius, std::span<const double> thickness,
                          std::span<double> outer) {
   const std::size_t n = layers.size();

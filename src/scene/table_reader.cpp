@@ -164,7 +164,12 @@ void TableReader::read_table(const toml::node& node, const Entry& entry, const s
   std::shared_ptr<void> made = entry.make();
   Locations unkept;
   Locations* kept = entry.locations ? entry.locations(made.get()) : &unkept;
-  read(*node.as_table(), entry, {}, where, made.get(), *kept);
+  const toml::table& table = *node.as_table();
+  read(table, entry, {}, where, made.get(), *kept);
+  for (const Key& key : entry.keys)  // else `check` finds it
+    if (!entry.locations && key.required && !table.contains(key.name))
+      fail(node.source(), "missing \"{}\" in {}: {}, {}", key.name, where, schema::expectation(key),
+           key.help);
   into.items.push_back(std::move(made));
 }
 

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/scene/sphere_classes.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "core/parallel.hpp"
 #include "domain/revolved_surface.hpp"
 #include "geometry/edges.hpp"
@@ -123,6 +125,34 @@ std::string spheres_json(const Packing& packing, const Shell& shell, const Frame
   return text + "}";
 }
 
+/// The layers of the spheres that are shown: of each how many, then where they end, from the centre out, and
+/// what they are made of, by its place among the names; none where the scene names none.
+std::string layers_json(const Packing& packing, const Shell& shell, const Frame& frame) {
+  const SphereLayers layers = layers_of(packing);
+  if (layers.empty()) return {};
+  const std::vector<std::string> materials = materials_of(packing.scene);
+  std::vector<std::uint16_t> counts, kinds;
+  std::vector<float> radii;
+  for (const std::uint32_t i : shell.spheres) {
+    const std::vector<Layer>& of = layers.of_class[packing.classes.empty() ? 0 : packing.classes[i]];
+    counts.push_back(static_cast<std::uint16_t>(of.size()));
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      radii.push_back(placed(layers.of(i)[k] / frame.scale));
+      const auto found = std::ranges::find(materials, material_of(of[k]));
+      kinds.push_back(static_cast<std::uint16_t>(found - materials.begin()));
+    }
+  }
+  std::string names, colours;
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    names += (k == 0 ? "" : ",") + json_text(materials[k]);
+    colours += fmt::format("{}\"{}\"", k == 0 ? "" : ",", kind_colour(k).text());
+  }
+  return fmt::format(
+      ",\n\"layers\":{{\"names\":[{}],\"colours\":[{}],\"counts\":\"{}\",\"radii\":\"{}\",\"kinds\":\"{}\"}}",
+      names, colours, base64_of<std::uint16_t>(counts), base64_of<float>(radii),
+      base64_of<std::uint16_t>(kinds));
+}
+
 std::string columns_json(const std::vector<ViewColumn>& columns) {
   using Kind = ViewColumn::Kind;
   std::string text = "[";
@@ -228,11 +258,11 @@ std::string view_data(const Packing& packing, const Measurements* measured, cons
   const Shell shell = shell_of(packing, options.most_spheres);
   return fmt::format(
       "{{\"dimension\":{},\"unit\":{},\"count\":{},\"shown\":{},\"origin\":{},\"scale\":{},\"eye\":{},"
-      "\"palette\":{},\"domain\":{},\n\"spheres\":{},\n\"columns\":{}}}",
+      "\"palette\":{},\"domain\":{},\n\"spheres\":{},\n\"columns\":{}{}}}",
       dimension, json_text(name_of(packing.scene.unit)), packing.spheres.size(), shell.spheres.size(),
       json_list(frame.origin), json_number(frame.scale), json_list(View::towards_eye()), palette_json(),
       domain_json(packing.domain, frame, options), spheres_json(packing, shell, frame),
-      columns_json(view_columns(packing, measured, shell.spheres)));
+      columns_json(view_columns(packing, measured, shell.spheres)), layers_json(packing, shell, frame));
 }
 
 }  // namespace bernal

@@ -206,5 +206,35 @@ TEST(DesignCommand, RefusesAbsurdInputInOneLine) {
   }
 }
 
+// What design says of a layer, predict says of the packing with that line in its scene.
+TEST(DesignCommand, ALayerThatIsToFillAFraction) {
+  const Folder folder;
+  const std::string scene =
+      folder
+          .write("scene.toml",
+                 scene_with("radius = 1\nlayers = [{ name = \"kernel\", radius = 0.5, material = \"UO2\" }, "
+                            "{ name = \"shell\" }]"))
+          .string();
+  const json found = designed({"layer", scene, "--layer", "kernel", "--fraction", "0.05"});
+  EXPECT_NEAR(found["share"].get<double>(), 0.125, 1e-12);
+  EXPECT_NEAR(found["phi"].get<double>(), 0.4, 1e-12);
+  EXPECT_EQ(designed({"layer", scene, "--layer", "UO2", "--fraction", "0.05"})["phi"], found["phi"]);
+  const Ended too_much = design({"layer", scene, "--layer", "kernel", "--fraction", "0.1"});
+  EXPECT_EQ(too_much.status, 3);
+  EXPECT_NE(too_much.err.find("kernel cannot fill 0.1 of a packing"), std::string::npos) << too_much.err;
+  const Ended predicted = bernal({"predict", "--scene", scene, "--json"});
+  const json layers = json::parse(predicted.out);
+  EXPECT_NEAR(layers["layers"][0]["share"].get<double>(), 0.125, 1e-12);
+  EXPECT_NEAR(layers["materials"][1]["packing_fraction"].get<double>(), 0.875 * layers["phi"].get<double>(),
+              1e-12);
+  expect_refused_in_one_line(design({"layer", scene, "--layer", "core", "--fraction", "0.1"}),
+                             {"no layer is called core", "kernel, shell"});
+  expect_refused_in_one_line(design({"layer", scene, "--layer", "kernel", "--fraction", "2"}),
+                             {"--fraction"});
+  const std::string plain = folder.write("plain.toml", scene_with("radius = 1")).string();
+  expect_refused_in_one_line(design({"layer", plain, "--layer", "kernel", "--fraction", "0.1"}),
+                             {"no layers"});
+}
+
 }  // namespace design_test
 }  // namespace bernal::testing

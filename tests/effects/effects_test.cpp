@@ -191,7 +191,7 @@ TEST_P(EffectsOf, TheSceneAreAllThatIsMadeThatAllocatesAndThatRuns) {
 
 TEST_P(EffectsOf, ThePlanAndThoseThatAreAbsentAreAllThatThereAre) {
   const Plan plan = build(GetParam().second);
-  std::set<std::string> all = {"start", "walls", "exact walls", "cells"};
+  std::set<std::string> all = {"start", "walls", "exact walls", "cells", "inside"};
   for (const StageEntry* stage : stage_entries())
     all.insert(stage->may_bring.begin(), stage->may_bring.end());
   std::set<std::string> told = names_of(plan);

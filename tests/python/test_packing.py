@@ -81,6 +81,36 @@ class Arrays(InFolder):
         self.assertAlmostEqual(proof.overlaps[0].ratio, 0.25)
 
 
+class Layers(InFolder):
+    def test_layers_are_arrays_one_of_each(self):
+        layers = [{"name": "core", "material": "glass", "material_density": 2500}, {"name": "coat", "thickness": 0.05}]
+        packing = bernal.pack(small(layers=layers))
+        core, coat = packing.layers
+        self.assertEqual([core["name"], core["material"], coat["material"]], ["core", "glass", "coat"])
+        self.assertEqual([core["material_density"], coat["material_density"]], [2500, None])
+        self.assertTrue((core["spheres"] == np.arange(300)).all())
+        self.assertTrue((coat["outer"] == packing.radii).all())
+        self.assertTrue((core["outer"] == coat["inner"]).all())
+        np.testing.assert_allclose(coat["outer"] - coat["inner"], 0.05, rtol=1e-12)
+        self.assertFalse(core["outer"].flags.writeable)
+        packing.write("out")
+        again = bernal.read("out")
+        self.assertTrue((again.layers[0]["outer"] == core["outer"]).all())
+        self.assertEqual(again.scene.layers[1]["thickness"], 0.05)
+        self.assertEqual(pickle.loads(pickle.dumps(packing)).layers[1]["name"], "coat")
+
+    def test_a_packing_without_layers_has_none(self):
+        self.assertEqual(bernal.pack(small()).layers, [])
+
+    def test_drawn_thicknesses_and_layers_of_classes(self):
+        drawn = {"distribution": "normal", "mean": 0.05, "sd": 0.01, "max": 0.08}
+        sizes = bernal.Classes([1, 2], [1, 1], layers=[[], [{"name": "core"}, {"name": "coat", "thickness": drawn}]])
+        core, coat = bernal.pack(small(diameters=sizes)).layers
+        self.assertTrue((coat["outer"] == 1).all())
+        self.assertGreater(np.ptp(coat["inner"]), 0.01)
+        self.refuses(bernal.InputError, "\"sdd\"", lambda: bernal.pack(small(layers=[{"name": "a", "sdd": 1}])))
+
+
 class Runs(InFolder):
     def test_the_command_packs_the_same(self):
         small().write("scene.toml")

@@ -127,6 +127,8 @@ class Scenes(unittest.TestCase):
     def test_what_is_missing_is_missed_by_both(self):
         cases = []
         for table in TABLES:
+            if table.group == "zone":  # a zone without a place is a layer, where the scene says that spheres settle
+                continue
             needed = table.needed()
             cases += [table.scene({k: v for k, v in needed.items() if k != name}) for name in needed]
         self.assertGreater(len(cases), 20)
@@ -156,6 +158,9 @@ class Scenes(unittest.TestCase):
 SPHERE = 'container = { kind = "sphere", radius = 9 }\n'
 # Of tests/unit/bad_scene_test.cpp what is wrong by a name, a type or a choice.
 BAD_SCENES = [
+    *(SPHERE + f"[spheres]\nradius = 1\nlayers = [{layer}]\n" for layer in (
+        "{}", '{ name = "a", share = 1 }', '{ name = "a", sd = 1 }', '{ name = "a", thickness = { mean = 1 } }',
+        '{ name = "a", share = 0.5, thickness = 1 }', '{ name = "a", material_density = 0 }')),
     "sead = 3\n", "[sphere]\nradius = 1\n", '[container]\nkind = "box"\n\n[periodic]\n',
     SPHERE + "[spheres]\ndiametre = 1\n", SPHERE + "[spheres]\nqqqqqqqq = 1\n",
     '[container]\nkind = "cylindre"\n[spheres]\nradius = 1\n', "[spheres]\nradius = 1\n",

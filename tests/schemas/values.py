@@ -8,6 +8,7 @@ FITTING = {
     "density": "[0, 1]", "sizes": "[1, 2]", "passing": "[0, 100]",
     "retained": "[100, 0]", "edges": "[1, 2, 3]", "counts": "[1, 1]", "masses": "[1, 1]", "of": "[1, 2]", "dimension": "3",
     "inner_radius": "0.5", "vertices": "[[0, 0], [9, 0], [0, 9]]", "contact": '"gap"',
+    "place": '"z < 5"',
 }
 GOOD = {
     "flag": ["true"], "length": ["1", "0.25", "1e-30", "1e30"], "file": ['"part.stl"'],
@@ -24,6 +25,7 @@ GOOD = {
     "table": ["{ volume = 2 }", '{ diameter = { distribution = "uniform", min = 1, max = 2 }, rounds = 0 }'],
     "tables": ['[{ name = "core" }]', '[{ name = "core" }, { name = "shell", share = 0.25, material_density = "2 g/cm3" }]'],
     "table_lists": ['[[{ name = "core" }, { name = "shell", share = 0.25 }], []]'],
+    "inside": ['[{ scene = "inner.toml" }]', '{ scene = "inner.toml", templates = 3 }'],
 }
 BAD = {
     "flag": ["1", '"true"', "[]"], "integer": ['"3"', "1.5", "true", "[1]", "1e31"], "number": ["true", "[1]", "{}"],
@@ -41,8 +43,9 @@ BAD = {
     "solids": ["[]", "1", '""', "[1]", '[{ kind = "periodic", edge = 1 }]', '[{ kind = "sphere" }]'],
     "table": ["[]", "1", '""', "{}", "[{ volume = 2 }]", "{ volume = 0 }", "{ volume = 1, diameter = 1 }",
               "{ volume = 1, rounds = -1 }", "{ volume = 1, name = 1 }"],
-    "tables": ["[]", "1", '""', "[1]", "{}", "[{}]", '[{ name = "a", share = 1 }]', '[{ name = "a", sd = 1 }]',
-               '[{ name = "a", thickness = { mean = 1 } }]', '[{ name = "a", share = 0.5, thickness = 1 }]'],
+    "tables": ["[]", "1", '""', "[1]", "{}"],
+    "inside": ["[]", "1", '"inner.toml"', "[1]", "{}", "{ templates = 3 }", '{ scene = "inner.toml", templates = 0 }',
+               '{ scene = "inner.toml", class = "a, b" }', '[{ scene = "inner.toml", turned = true }]'],
     "table_lists": ["[]", "1", "[1, 2]", '[{ name = "core" }, { name = "shell" }]', '[[{ share = 0.5 }], []]'],
 }
 
@@ -50,6 +53,11 @@ BAD = {
 def text_of(number):
     """A limit as TOML: whole ones without a point."""
     return str(int(number)) if number == int(number) and abs(number) < 2**63 else repr(number)
+
+
+def kind_of(key):
+    """Whose values it takes: those of its type, but for tables of another kind than layers."""
+    return "inside" if key["name"] == "inside" else key["type"]
 
 
 def good_values(key):
@@ -65,13 +73,14 @@ def good_values(key):
         if low is not None and high is not None and not whole:
             values.append(repr(0.5 * (low + min(high, low + 1))))
         return values or ["1"]
-    values = GOOD[key["type"]] + [f'"{word}"' for word in key["words"]]
+    values = GOOD[kind_of(key)] + [f'"{word}"' for word in key["words"]]
     return ["true"] if key["type"] == "flag" and key["min"] else values
 
 
 def bad_values(key, seen):
     from_zero = key["type"] == "lengths" and key["min"] == 0
-    values = list(some(BAD["amounts" if from_zero else key["type"]], seen, ("bad", key["type"], from_zero)))
+    kind = kind_of(key)
+    values = list(some(BAD["amounts" if from_zero else kind], seen, ("bad", kind, from_zero)))
     if key["type"] == "flag" and key["min"]:
         values.append("false")
     if key["type"] in ("integer", "number"):
@@ -140,6 +149,9 @@ class Table:
             return sphere + "[spheres]\ncount = 3\ndiameter = { " + ", ".join(body) + " }\n"
         if self.group in ("stage", "output"):
             return sphere + spheres + f"[[{self.group}]]\n" + "\n".join(body) + "\n"
+        if self.group == "zone":
+            box = 'container = { kind = "box", size = [20, 20, 20] }\n'
+            return 'unit = "mm"\n' + box + "[[zone]]\n" + "\n".join(body) + "\n"
         if self.group == "engine":
             return sphere + spheres + "[engine]\n" + "\n".join(body) + "\n"
         if self.name == "scene":
@@ -153,10 +165,9 @@ class Table:
 
 
 def tables_of(reference):
-    """All but zones, whose keys are those of [spheres], and whose place depends on the container, and but tables that
-    stand within others: their values are samples of the keys that they stand in."""
+    """All but tables that stand within others: their values are samples of the keys that they stand in."""
     for group in reference["groups"]:
-        if group["name"] in ("zone", "table"):
+        if group["name"] == "table":
             continue
         for table in group["tables"]:
             yield Table(group["name"], group["selector"], table["name"],

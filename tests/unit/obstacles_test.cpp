@@ -84,6 +84,29 @@ TEST(Obstacles, WhatIsLeftHasTheVolumeThatIsLeft) {
               (18 - 0.5) * 5, 1e-9);
 }
 
+TEST(Obstacles, ARodAboutTheAxisFromEndToEndLeavesASolidOfRevolution) {
+  const std::string rod =
+      "obstacles = [{ kind = \"cylinder\", radius = 1, height = 80, base = [0, 0, -10] }]";
+  const Domain tube = domain_with(cylinder + rod);
+  EXPECT_TRUE(std::holds_alternative<Revolved>(tube));
+  EXPECT_NEAR(volume_of(tube), pi * 399 * 60, 1e-9 * pi * 399 * 60);
+  const std::string vessel = "kind = \"revolved\"\nprofile = [[4, 0], [4, 5], [8, 12], [8, 20]]\n";
+  const Domain around = domain_with(
+      vessel +
+      "obstacles = [{ kind = \"cylinder\", radius = 1, height = 20, axis = [0, 0, -3], base = [0, 0, 20] }]");
+  EXPECT_TRUE(std::holds_alternative<Revolved>(around)) << "it touches floor and lid";
+  const double volume = pi * (16 * 5 + 7 * (16 + 32 + 64) / 3.0 + 64 * 8 - 20);
+  EXPECT_NEAR(volume_of(around), volume, 1e-9 * volume);
+  const auto container = make_container(around, WallArithmetic::exact, 1e-15);
+  EXPECT_TRUE(container->contains({2, 0, 10}, 1));
+  EXPECT_FALSE(container->contains({2, 0, 10}, std::nextafter(1.0, 2.0)));
+  for (const char* other : {"radius = 1, height = 30", "radius = 1, height = 80, base = [1, 0, -10]",
+                            "radius = 1, height = 80, base = [0, 0, -10], axis = [0, 1e-3, 1]"})
+    EXPECT_TRUE(std::holds_alternative<Mesh>(
+        domain_with(cylinder + "obstacles = [{ kind = \"cylinder\", " + other + " }]")))
+        << other;
+}
+
 // A ball between the flat faces lies between the round walls, whatever these are; and one that keeps the
 // deviation from the round walls lies between the flat faces.
 TEST(Obstacles, FlatFacesStandOnTheInnerSideOfRoundWalls) {

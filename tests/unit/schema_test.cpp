@@ -101,6 +101,9 @@ std::string sample(const Key& key, int choice) {
       return choice == 0 ? "{ volume = 2.5, rounds = 1 }"
                          : "{ diameter = { distribution = \"uniform\", min = 1, max = 2 } }";
     case Type::tables:
+      if (key.name == "inside")
+        return choice == 0 ? "[{ scene = \"inner.toml\" }]"
+                           : "[{ scene = \"/tmp/a \\\"b\\\".toml\", templates = 3 }]";
       return choice == 0 ? "[{ name = \"core\" }]"
                          : "[{ name = \"core\", material = \"UO2\", material_density = 10800 }, "
                            "{ name = \"shell\", share = 0.30000000000000004 }]";
@@ -123,7 +126,9 @@ std::string sample_of(const Entry& entry, const Key& key, int choice) {
   if (key.type == Type::file && std::ranges::any_of(entry.keys, has_points)) return file_of_points();
   if (key.name == "radii") return choice == 0 ? "[2, 0]" : "[1e-5, 3.0000000000000004]";
   if (key.name == "inner_radius") return "0.05";
-  if (key.name == "rounding") return "1e-10";  // of a box that is 1e-9 thick
+  if (key.name == "values" && entry.find("material")) return "\"fraction\"";  // which has that
+  if (key.name == "surface" && entry.find("layer")) return "\"spheres\"";     // which have layers
+  if (key.name == "rounding") return "1e-10";                                 // of a box that is 1e-9 thick
   for (const OutputTable* format : output_tables())
     if (&format->keys == &entry && key.type == Type::file)
       return choice == 0 ? "\"mine.x\"" : "'a \"b\" \\c'";
@@ -199,8 +204,11 @@ void for_every_entry(Visit visit) {
     for (const StageTable* stage : stage_tables()) visit_stage(*stage, n, visit);
     for (const OutputTable* format : output_tables())
       visit(format->keys, keys_of(format->keys, n), [&](const std::vector<std::string>& lines) {
-        return with_spheres(
-            fmt::format("radius = 1\n[[output]]\nformat = \"{}\"\n{}", format->name(), joined(lines, "\n")));
+        // Of layers that the samples of names call so.
+        return with_spheres(fmt::format(
+            "radius = 1\nlayers = [{{ name = \"sand\" }}, {{ name = \"glass of 3 mm\", share = 0.5 }}]\n"
+            "[[output]]\nformat = \"{}\"\n{}",
+            format->name(), joined(lines, "\n")));
       });
     visit(schema::scene_entry(), keys_of(schema::scene_entry(), n),
           [&](const std::vector<std::string>& lines) {

@@ -31,7 +31,7 @@ std::vector<NestLevel> levels_of(const Packing&);
 std::uint64_t spheres_of_all_levels(const Packing&);
 
 /// A vector turned by a quaternion w, x, y, z that is not zero, as if its norm were 1: each component is off
-/// by less than 1e-15 of the vector's length.
+/// by less than 4e-15 of the vector's length.
 Vector<3> turned(const Vector<3>&, const std::array<double, 4>& quaternion);
 
 }  // namespace bernal

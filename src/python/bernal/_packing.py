@@ -180,6 +180,28 @@ class Packing:
         return layers
 
     @cached_property
+    def inside(self) -> list[dict[str, Any]]:
+        """The packings inside of the spheres of each class that has some; empty where the scene names none.
+
+        Each has `class`, `layer` (the innermost, "" without layers), `templates` (packings, in balls about the origin
+        and in the unit of their own scene) and, as arrays of one length, `spheres` (the numbers of those that are
+        filled), `which` (of the templates, from 0) and `rotations` (unit quaternions w, x, y, z, shape (n, 4))."""
+        insides: list[dict[str, Any]] = self._core.inside()
+        for inside in insides:
+            inside["templates"] = [Packing._of(core) for core in inside["templates"]]
+            for name in ("spheres", "which", "rotations"):
+                inside[name].setflags(write=False)
+        return insides
+
+    @property
+    def levels(self) -> list[dict[str, Any]]:
+        """The spheres themselves, then what lies inside of them, a level below each other: `name`, `packings` that were
+        made with `packed` spheres in them, spheres that are `filled`, `spheres` that stand for themselves, the radius of
+        the `ball` in `unit`, `packing_fraction` of the balls, and the `share` of the domain's volume."""
+        levels: list[dict[str, Any]] = self._core.levels()
+        return levels
+
+    @cached_property
     def centers(self) -> Array:
         """Shape (N, D). A copy, made at the first access and then kept; read-only."""
         centers = np.stack(self.columns, axis=1)

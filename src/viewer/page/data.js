@@ -31,6 +31,22 @@ function reordered(values, order, width) {
   return out;
 }
 
+// The balls in which layers end, from the centre out, with the colours that a cut shows; null where there are none.
+function shellsOf(json, spheres) {
+  if (!json.layers) return null;
+  const number = counts(json.layers.counts), radii = floats(json.layers.radii), kinds = counts(json.layers.kinds);
+  const balls = new Float32Array(4 * radii.length), tints = new Uint8Array(4 * radii.length);
+  const colours = json.layers.colours.map((hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16)));
+  let at = 0;
+  for (let k = 0; k < number.length; ++k)
+    for (let layer = 0; layer < number[k]; ++layer, ++at) {
+      balls.set(spheres.subarray(4 * k, 4 * k + 3), 4 * at);
+      balls[4 * at + 3] = radii[at];
+      tints.set([...colours[kinds[at]], 255], 4 * at);
+    }
+  return { balls, tints, count: radii.length, names: json.layers.names, colours: json.layers.colours };
+}
+
 // Spheres come outermost first: what hides the others is drawn before them.
 export function decode(json) {
   const flat = json.dimension === 2, n = json.shown;
@@ -42,6 +58,7 @@ export function decode(json) {
       spheres[4 * k + axis] = centers[json.dimension * k + axis];
     spheres[4 * k + 3] = each ? each[k] : radii;
   }
+  const shells = shellsOf(json, spheres);
   const columns = json.columns.map((column) => ({
     key: column.key, title: column.title, kind: column.kind,
     values: column.kind === "count" || column.kind === "category" ? counts(column.values) : floats(column.values),
@@ -63,7 +80,7 @@ export function decode(json) {
   for (let k = 0; k < n; ++k) sum += spheres[4 * k + 3];
   return {
     flat, count: json.count, shown: n, unit: json.unit, origin: json.origin, scale: json.scale, eye: json.eye,
-    palette: json.palette, domain, spheres, columns, indices, depths: reordered(depths, order, 1),
+    palette: json.palette, domain, spheres, columns, shells, indices, depths: reordered(depths, order, 1),
     noun: json.dimension === 2 ? "disc" : "sphere", shellDepth: json.spheres.depth || 0, meanRadius: n > 0 ? sum / n : 0,
   };
 }

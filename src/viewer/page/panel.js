@@ -137,6 +137,10 @@ export class Panel {
     }
     if (column.values.some((v) => !Number.isFinite(v)))
       this.key.append(swatch(categoryColour(0), "no number"));
+    const { shells } = this.data;
+    if (shells)
+      this.key.append(element("small", { textContent: "in a cut" }), element("div", { className: "bernal-swatches" },
+        ...shells.names.map((name, k) => swatch(shells.colours[k], name))));
     this.colourSelect.value = column.key;
   }
 

@@ -53,7 +53,8 @@ export class Renderer {
     return array;
   }
 
-  // Group 0 are the spheres, group 1 their images; four numbers and four bytes each, of which `count` are drawn. Arrays
+  // Group 0 are the spheres, group 1 their images, group 2 the balls in which their layers end, of which only what a cut
+  // leaves is drawn, over the discs of whole spheres, as those come later at the same depth; four numbers and four bytes each, of which `count` are drawn. Arrays
   // are whole rows of ROW.
   setSpheres(group, spheres, tints, count) {
     const gl = this.gl, rows = spheres.length / (4 * ROW);
@@ -68,6 +69,12 @@ export class Renderer {
     fill(this.groups[group].spheres, gl.FLOAT, spheres);
     fill(this.groups[group].tints, gl.UNSIGNED_BYTE, tints);
     this.groups[group].count = count;
+  }
+  setShells({ balls, tints, count }) {
+    const whole = new Float32Array(4 * wholeRows(count)), bytes = new Uint8Array(4 * wholeRows(count));
+    whole.set(balls);
+    bytes.set(tints);
+    this.setSpheres(2, whole, bytes, count);
   }
   setWalls({ vertices, triangles, lines }) {
     const gl = this.gl;
@@ -170,9 +177,11 @@ export class Renderer {
     gl.uniform1i(at.spheres, 0);
     gl.uniform1i(at.tints, 1);
     gl.bindVertexArray(this.nothing);
-    for (let group = 0; group < this.groups.length; ++group) {
+    const cuts = cut[0] !== 0 || cut[1] !== 0 || cut[2] !== 0;
+    for (const group of [2, 0, 1]) {
+      if (!this.groups[group] || (group === 1 && !scene.images) || (group === 2 && !cuts)) continue;
       const { spheres, tints, count } = this.groups[group];
-      if (group === 1 && !scene.images) continue;
+      gl.uniform1f(at.discsOnly, group === 2 ? 1 : 0);
       gl.uniform1i(at.selected, scene.selectedGroup === group ? scene.selected : -1);
       gl.activeTexture(gl.TEXTURE0);
       gl.bindTexture(gl.TEXTURE_2D, spheres);

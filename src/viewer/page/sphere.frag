@@ -10,6 +10,7 @@ uniform vec3 cutNormal;  // as the eye sees it
 uniform float pixel;     // its length
 uniform vec3 background, accent;
 uniform float flatView;
+uniform float discsOnly;  // of balls within spheres nothing else is drawn
 layout(location = 0) out vec4 outColour;  // and how much what stands around it shades it
 layout(location = 1) out vec4 outHeight;  // towards the eye, in three bytes
 
@@ -37,6 +38,8 @@ void main() {
     shaded = mix(darker(base, 0.55), face, smoothstep(rim - 0.6, rim + 0.6, from_rim));
     if (ball.w > 0.5) shaded = mix(accent, shaded, smoothstep(2.2 * rim, 2.2 * rim + 1.5, from_rim));
     strength = 0.25;
+  } else if (discsOnly > 0.5) {
+    discard;
   } else {
     float lit = 0.5 + 0.5 * dot(normal, normalize(vec3(-0.45, 0.65, 0.62)));
     float gleam = pow(max(0.0, dot(normal, normalize(vec3(-0.28, 0.42, 0.86)))), 24.0);
@@ -50,6 +53,6 @@ void main() {
   vec3 bytes = fract(height * vec3(1.0, 255.0, 65025.0));
   outHeight = vec4(bytes - bytes.yzz * vec3(1.0 / 255.0, 1.0 / 255.0, 0.0), 1.0);
 #ifdef EXACT
-  gl_FragDepth = 1.0 - height;
+  gl_FragDepth = 1.0 - height - 1e-6 * discsOnly;
 #endif
 }

@@ -108,6 +108,7 @@ export class View {
     this.renderer.setSpheres(0, this.order.spheres, this.order.bytes, 0);
     this.renderer.setWalls(this.walls);
     if (this.images) this.uploadImages();
+    if (data.shells) this.renderer.setShells(data.shells);
     if (data.shown > 0) this.panel.writeKey(state.column, this.scale);
   }
   uploadImages() {
