@@ -124,7 +124,12 @@ WrittenCells write_cells(const Packing& packing, const CellFileOptions& options,
   if (name.empty() || name == "." || name == "..")
     throw Error(ErrorCode::cannot_write, "is a folder; give the name of a file in it", {named.string()});
   std::vector<std::string> names{name.string()};
-  for (const std::string_view ending : writer.endings) names.push_back(beside(name, ending));
+  for (const std::string_view ending : writer.endings) {
+    names.push_back(beside(name, ending));
+    if (names.back() == names.front())
+      refuse(fmt::format("{} is a file that goes with the one of cells; let the name end in {}",
+                         plain_text(names.front()), writer.format.ending));
+  }
   require_free(folder, names);
   const Interruptible interruptible(monitor);
   CellFile file{.packing = packing, .options = options, .name = name, .monitor = monitor};
