@@ -38,7 +38,7 @@ TYPES = {
     "flag": "bool", "integer": "int", "number": "float", "length": "float", "word": "str", "file": "Any", "text": "str",
     "names": "Any", "points": PAIRS, "lines": f"Sequence[{PAIRS}]", "axes": "Sequence[int]",
     "distribution": "float | Sizes", "parts": "Sequence[float | Sizes]",
-    "solids": "Any", "table": "dict[str, Any]", "tables": "Sequence[dict[str, Any]]", "table_lists": "Sequence[Sequence[dict[str, Any]]]",
+    "solids": "Any", "table": "dict[str, Any]", "tables": "dict[str, Any] | Sequence[dict[str, Any]]", "table_lists": "Sequence[Sequence[dict[str, Any]]]",
 }  # fmt: skip
 SPECIAL = ("__init__", "__len__", "__bool__", "__str__", "__float__", "__getattr__")
 

@@ -47,9 +47,9 @@ class Levels {
 
   void add(const std::string& name, int depth, const PackingsInside& inside,
            const std::vector<std::uint64_t>& uses) {
-    const auto found = std::ranges::find(levels_, name, &NestLevel::name);
-    if (found == levels_.end()) levels_.push_back({.name = name, .depth = depth});
-    NestLevel& level = found == levels_.end() ? levels_.back() : *found;
+    auto found = std::ranges::find(levels_, name, &NestLevel::name);
+    if (found == levels_.end()) found = levels_.insert(found, NestLevel{.name = name, .depth = depth});
+    NestLevel& level = *found;
     double& balls = balls_[name];
     for (std::size_t t = 0; t < uses.size(); ++t) {
       const Packing& packing = *inside.templates[t];

@@ -79,8 +79,17 @@ def names_files(key: dict[str, Any]) -> bool:
     return key["type"] in ("file", "solids")
 
 
+def _absolute(inside: Any) -> Any:
+    """A table of what lies inside of spheres, or several, with the absolute path of its scene."""
+    if isinstance(inside, dict):
+        return {name: _surfaces.named(part) if name == "scene" else part for name, part in inside.items()}
+    return [_absolute(each) for each in inside] if isinstance(inside, (list, tuple)) else inside
+
+
 def taken(key: dict[str, Any], value: Any) -> Any:
     """The value of a key as a scene has it. Names of files become absolute."""
+    if key["table"] == "inside":
+        value = _absolute(value)
     value = _toml.plain(_surfaces.named(value) if names_files(key) else value)
     if key["type"] == "integer" and isinstance(value, float) and value.is_integer():
         value = int(value)
