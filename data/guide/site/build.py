@@ -34,7 +34,7 @@ SECTIONS = [
         ("part", "Fill a CAD part"), ("repair", "Repair a CAD file"), ("sieve", "Match a sieve curve"),
         ("periodic", "A dense periodic box"), ("mesh", "Mesh a packing"), ("hand_over", "Hand over to LAMMPS"),
         ("engines", "Engines on many machines"),
-        ("density", "How dense can it be"), ("settle", "Settle a bed"), ("measure", "Look and measure"), ("layers", "Layers of spheres"),
+        ("density", "How dense can it be"), ("settle", "Settle a bed"), ("measure", "Look and measure"), ("layers", "Layers of spheres"), ("nests", "Packings in spheres"),
         ("cost", "Accuracy, time and cost"), ("sweep", "Many scenes at once"),
         ("checkpoints", "Runs that are ended and go on"),
         ("python", "From Python"))]),
