@@ -3,8 +3,8 @@
 
 Small packings in a periodic box, a cylinder and a CAD part: fragments of the spheres as they are, touching; conforming
 tetrahedra with a gap of 1 %, their quality, volume fractions and nodes at opposite ends; STEP and
-BREP opened, their volumes, of layers one by one. --large: 800 spheres in a periodic box and 300 in a CAD part, the layers of 10,000 spheres, half an hour. Debian:
-python3-gmsh python3-numpy. Takes two minutes.
+BREP opened, their volumes, of layers one by one. --large: 800 spheres in a periodic box and 300 in a CAD part, the
+layers of 10,000 spheres, half an hour. Debian: python3-gmsh python3-numpy. Takes two minutes.
 """
 import math
 
