@@ -144,6 +144,7 @@ std::string write_serpent(const Exported& file, StagedFolder& staged) {
   require_boxes_repeat(file);
   const LevelModel model = levels_of(file);
   SerpentInput input(file, model);
+  const std::filesystem::path to = staged.add(file.output.file.string());  // the first of the files
   std::vector<std::filesystem::path> beside;
   std::string marks;
   for (const Level& level : model.levels) {
@@ -160,7 +161,9 @@ std::string write_serpent(const Exported& file, StagedFolder& staged) {
     beside.push_back(staged.written(name));
     marks += level_comments(level, file, "% ", "\n");
   }
-  staged.write(file.output.file.string(), sealed_script(input.text() + "\n" + marks, beside, "% "));
+  TextFile out(to);
+  out.add(sealed_script(input.text() + "\n" + marks, beside, "% "));
+  out.close();
   return model.in_words();
 }
 
