@@ -64,8 +64,16 @@ void print_result(const Packing& packing, std::uint64_t spheres, double packing_
   say(stderr, "outcome    {}\n", falls_short(packing.outcome) ? in_amber(stderr, end) : end);
   if (packing.cells) say(stderr, "cells      {}\n", cells_in_words(*packing.cells));
   say(stderr, "proof      {}\n", written.certificate.statement);
+  const std::filesystem::path folder = written.files.front().parent_path();
+  std::size_t files_inside = 0;
   for (std::size_t i = 0; i < written.files.size(); ++i)
-    say(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
+    if (!packing.inside.empty() && *written.files[i].lexically_relative(folder).begin() == "inside")
+      ++files_inside;
+    else
+      say(stderr, "{:<9}  {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
+  if (files_inside > 0)
+    say(stderr, "           {} with {} files\n", plain_text((folder / "inside").string(), 5000),
+        grouped(files_inside));
   for (std::size_t i = 0; i < written.notes.size(); ++i)
     say(stderr, "output     {}: {}\n", plain_text(packing.scene.outputs[i].file.string(), 5000),
         written.notes[i]);

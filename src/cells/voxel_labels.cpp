@@ -159,7 +159,7 @@ class LabelImage {
   const VoxelGrid& grid_;
   Vector<3> periods_;
   std::vector<Planes> cells_;
-  std::optional<VoxelsInside> inside_;
+  std::optional<InsideOfDomain> inside_;
 };
 
 }  // namespace

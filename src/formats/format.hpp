@@ -114,7 +114,7 @@ struct FileContents {
   std::optional<Unit> unit = {};
   std::optional<FileBox> box = {};
   std::optional<Scene> container = {};  ///< with the container, where the file says it
-  bool is_flat = false;  ///< the file states two dimensions; the third coordinate is ignored
+  bool is_flat = false;                 ///< the file states two dimensions; the third coordinate is ignored
   std::string note = {};
 
   std::size_t size() const { return spheres.x.front().size(); }

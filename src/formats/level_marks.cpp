@@ -81,6 +81,8 @@ void take_container(const ForeignLines& lines, FileContents& contents) {
   } catch (const Error& error) {
     lines.fail(fmt::format("the container is not as bernal wrote it: {}", error.what()));
   }
+  if (!contents.container->container.meshes().empty())
+    lines.fail("the container is not as bernal wrote it: it is in another file");
 }
 
 }  // namespace

@@ -236,14 +236,11 @@ class Builder {
 TurnMatrix transposed(const TurnMatrix& m) { return {m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]}; }
 
 std::string LevelModel::in_words() const {
-  // Templates of about the same size stand together.
-  std::string words =
-      fmt::format("{} {}", grouped(outermost().own), outermost().own == 1 ? "sphere" : "spheres");
+  std::string words = "radii";
   if (levels.size() > 1) {
     std::size_t inner = 0;
     for (std::size_t k = 1; k < levels.size(); ++k) inner += levels[k].own;
-    words +=
-        fmt::format(", and {} in {} packings inside of them", grouped(inner), grouped(levels.size() - 1));
+    words += fmt::format("; {} in {} packings inside of them", grouped(inner), grouped(levels.size() - 1));
   }
   std::vector<std::string_view> names;
   for (const LevelMaterial& material : materials) names.push_back(material.name);
@@ -262,6 +259,11 @@ std::vector<std::string> level_names(const Packing& packing) {
   std::vector<std::string> names;
   add_level_names(packing, std::string(name_of_outermost), names);
   return names;
+}
+
+void require_boxes_repeat(const Exported& file) {
+  if (const auto* cylinder = std::get_if<Cylinder>(&file.domain); cylinder && cylinder->periodic)
+    refuse(file, "repeats boxes alone, and this is a cylinder that repeats itself; openmc holds it");
 }
 
 void require_one_level(const LevelModel& model, const Exported& file) {

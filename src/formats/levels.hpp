@@ -59,7 +59,8 @@ struct LevelModel {
   std::vector<Level> levels;  ///< the first is the outermost; those that lie in another stand behind it
 
   const Level& outermost() const { return levels.front(); }
-  /// The levels in words: "2 levels, 29,400 and 10 x 19,130 spheres, 7 materials".
+  /// What it holds besides the outermost spheres: "radii; 191,300 in 10 packings inside of them; materials
+  /// background, kernel".
   std::string in_words() const;
 };
 
@@ -75,5 +76,7 @@ std::vector<std::string> level_names(const Packing&);
 
 /// For programs that know one level alone: throws Error{bad_scene} where there are more.
 void require_one_level(const LevelModel&, const Exported&);
+/// For programs in which boxes repeat themselves and nothing else: throws Error{bad_scene} for a cylinder.
+void require_boxes_repeat(const Exported&);
 
 }  // namespace bernal

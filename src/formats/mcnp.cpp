@@ -76,6 +76,7 @@ class McnpInput {
     card_.add("{} {} -{}", next_cell_++, material + 1, model_.materials[material].density.value_or(1));
   }
   void end_cell() {
+    if (repeats_) card_.add("u={}", universe_of_box);
     card_.add("imp:n=1");
     card_.end(out_);
   }
@@ -93,6 +94,7 @@ class McnpInput {
         end_cell();
       }
     }
+    if (repeats_) return write_repeated();
     for (std::size_t k = 0; k < walls_.inside.size(); ++k) {
       begin_cell(level_.background);
       for (const SurfaceSide& half : sides_of(walls_.inside[k]))
@@ -101,6 +103,29 @@ class McnpInput {
       end_cell();
     }
     write_outside();
+  }
+
+  /// A box that repeats itself is an element of a lattice, which has no end of its own: it fills so many
+  /// boxes that none of the outermost matters.
+  void write_repeated() {
+    begin_cell(level_.background);
+    for (std::size_t i = 0; i < level_.size(); ++i) card_.add("{}", i + 1);
+    end_cell();
+    body_ = macrobody();
+    out_.add(next_cell_++, " 0 -", first_wall_, " lat=1 u=", universe_of_lattice, " fill=", universe_of_box,
+             " imp:n=1\n");
+    out_.add(next_cell_++, " 0 -", first_wall_ + 1, " fill=", universe_of_lattice, " imp:n=1\n");
+    out_.add(next_cell_++, " 0 ", first_wall_ + 1, " imp:n=0\n");
+  }
+  std::string many_boxes() const {
+    constexpr double boxes = 1e5;
+    std::string body = "RPP";
+    for (int k = 0; k < 3; ++k) {
+      const bool repeats = file_.periods()[static_cast<std::size_t>(k)];
+      const double more = repeats ? boxes * level_.bounds.size()[k] : 0;
+      body += fmt::format(" {} {}", level_.bounds.lower[k] - more, level_.bounds.upper[k] + more);
+    }
+    return body;
   }
 
   void write_outside() {
@@ -173,6 +198,9 @@ class McnpInput {
     out_.add("c the ", walls_.words, '\n');
     if (!body_.empty()) {
       card_.add("{} {}", first_wall_, body_);
+      card_.end(out_);
+      if (!repeats_) return;
+      card_.add("{} {}", first_wall_ + 1, many_boxes());
       return card_.end(out_);
     }
     for (std::size_t k = 0; k < walls_.surfaces.size(); ++k) {
@@ -199,6 +227,8 @@ class McnpInput {
   const Level& level_;
   TextFile& out_;
   LevelWalls walls_;
+  bool repeats_ = is_periodic(file_.domain);
+  static constexpr int universe_of_lattice = 1, universe_of_box = 2;
   std::vector<Id> first_shell_;
   Id first_wall_ = 1, next_cell_ = 1;
   std::string body_;
@@ -208,10 +238,7 @@ class McnpInput {
 std::string write_mcnp(const Exported& file, StagedFolder& staged) {
   const LevelModel model = levels_of(file);
   require_one_level(model, file);
-  if (is_periodic(file.domain))
-    throw Error(ErrorCode::bad_scene,
-                "the format mcnp repeats nothing along three axes; openmc, serpent and scone do",
-                file.output.locations.whole);
+  require_boxes_repeat(file);
   TextFile out(staged.add(file.output.file.string()));
   McnpInput(file, model, out).write();
   out.close();

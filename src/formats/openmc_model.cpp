@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/lower_case.hpp"
+#include "bernal/core/text.hpp"
 #include "formats/level_lattice.hpp"
 #include "formats/level_marks.hpp"
 #include "formats/level_walls.hpp"
+#include "formats/templates.hpp"
 #include "formats/text_file.hpp"
 
 namespace bernal {
@@ -241,13 +242,13 @@ std::string comment_of(const Exported& file) {
 
 /// Names and densities; what they are made of, a packing does not know.
 std::string materials_text(const LevelModel& model) {
-  std::string text = "<materials>\n  <!-- give each its nuclides, and a density where none is known -->\n";
+  std::string text =
+      "<materials>\n  <!-- give each its nuclides; where no density is known it is the sum of theirs -->\n";
   for (std::size_t k = 0; k < model.materials.size(); ++k) {
     const LevelMaterial& material = model.materials[k];
-    text += fmt::format("  <material id=\"{}\" name=\"{}\"", k + 1, material.name);
-    text += material.density ? fmt::format(">\n    <density value=\"{}\" units=\"g/cm3\"/>\n  </material>\n",
-                                           *material.density)
-                             : "/>\n";
+    text += fmt::format(
+        "  <material id=\"{}\" name=\"{}\">\n    <density {}/>\n  </material>\n", k + 1, material.name,
+        material.density ? fmt::format("value=\"{}\" units=\"g/cm3\"", *material.density) : "units=\"sum\"");
   }
   return text + "</materials>\n";
 }
@@ -260,6 +261,15 @@ std::string settings_text(const Exported& file) {
       "strength=\"1.0\">\n    <space type=\"box\">\n      <parameters>{} {}</parameters>\n    </space>\n"
       "  </source>\n</settings>\n",
       row_of(bounds.lower), row_of(bounds.upper));
+}
+
+std::string build_script(const Exported& file, const LevelModel& model) {
+  std::vector<std::string_view> names;
+  for (const LevelMaterial& material : model.materials) names.push_back(material.name);
+  return filled(openmc_build_py,
+                {{"TITLE", file.title()},
+                 {"LEVELS", fmt::format("{} spheres, {}", grouped(file.size()), model.in_words())},
+                 {"MATERIALS", fmt::format("{}", fmt::join(names, ", "))}});
 }
 
 }  // namespace
@@ -286,6 +296,7 @@ std::string write_openmc_model(const Exported& file, StagedFolder& staged) {
     write_to(name + "/geometry.xml", geometry);
     write_to(name + "/materials.xml", [&](TextFile& out) { out.add(materials_text(model)); });
     write_to(name + "/settings.xml", [&](TextFile& out) { out.add(settings_text(file)); });
+    staged.write(name + "/build.py", build_script(file, model));
   }
   return model.in_words();
 }

@@ -242,11 +242,7 @@ class SconeGeometry {
 };
 
 std::string write_scone(const Exported& file, StagedFolder& staged) {
-  if (const auto* cylinder = std::get_if<Cylinder>(&file.domain); cylinder && cylinder->periodic)
-    throw Error(ErrorCode::bad_scene,
-                "the format scone repeats boxes alone, and this is a cylinder that repeats itself; openmc "
-                "holds it",
-                file.output.locations.whole);
+  require_boxes_repeat(file);
   const LevelModel model = levels_of(file);
   staged.write(file.output.file.string(), SconeGeometry(file, model).text());
   return model.in_words();

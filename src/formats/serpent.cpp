@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bernal/core/text.hpp"
 #include "files/file_kind.hpp"
 #include "files/seal.hpp"
 #include "formats/level_marks.hpp"
@@ -103,7 +102,7 @@ class SerpentInput {
 
   void add_level(const Level& level) {
     const std::string universe = universe_of(level);
-    add("\n% level {}: {} spheres\n", level.name, grouped(level.size()));
+    add("\n% the spheres of {}\n", level.name);
     if (!level.turns.empty())
       add("% turned ones: coordinates that enter a universe are multiplied by its matrix\n");
     add("cell around_{0} around_{0} {1} -everywhere\n", universe, material(level.background));
@@ -141,18 +140,11 @@ class SerpentInput {
   std::string text_;
 };
 
-void require_serpent_period(const Exported& file) {
-  if (const auto* cylinder = std::get_if<Cylinder>(&file.domain); cylinder && cylinder->periodic)
-    throw Error(ErrorCode::bad_scene,
-                "the format serpent repeats boxes alone, and this is a cylinder that repeats itself; openmc "
-                "holds it",
-                file.output.locations.whole);
-}
-
 std::string write_serpent(const Exported& file, StagedFolder& staged) {
-  require_serpent_period(file);
+  require_boxes_repeat(file);
   const LevelModel model = levels_of(file);
   SerpentInput input(file, model);
+  const std::filesystem::path to = staged.add(file.output.file.string());  // the first of the files
   std::vector<std::filesystem::path> beside;
   std::string marks;
   for (const Level& level : model.levels) {
@@ -169,7 +161,9 @@ std::string write_serpent(const Exported& file, StagedFolder& staged) {
     beside.push_back(staged.written(name));
     marks += level_comments(level, file, "% ", "\n");
   }
-  staged.write(file.output.file.string(), sealed_script(input.text() + "\n" + marks, beside, "% "));
+  TextFile out(to);
+  out.add(sealed_script(input.text() + "\n" + marks, beside, "% "));
+  out.close();
   return model.in_words();
 }
 

@@ -96,10 +96,11 @@ Plan plan_of_ball(const Plan& around, const Inside& inside, const std::string& n
     return build_inside(read_scene_inside(inside.scene, {radius, unit}), scenes);
   } catch (const Error& error) {
     const Location& at = error.location();
+    const std::string of = at.line > 0 || at.file.empty() ? "" : at.file + ": ";
     throw Error(error.code(),
-                fmt::format("{} (inside of {}, in a ball of radius {:.6g} {})", error.message(), name, radius,
-                            name_of(unit)),
-                at.line > 0 ? at : Location{inside.scene.string()});
+                fmt::format("{}{} (inside of {}, in a ball of radius {:.6g} {})", of, error.message(), name,
+                            radius, name_of(unit)),
+                at.line > 0 ? at : inside.locations.of("scene"));
   }
 }
 

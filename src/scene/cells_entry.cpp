@@ -1,5 +1,6 @@
 #include "scene/cells_entry.hpp"
 
+#include <algorithm>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -55,10 +56,10 @@ const Entry& cells_entry() {
   static const Entry made = entry<CellSizes>(
       {.name = "cells",
        .help = "the sizes that the Laguerre cells of the packing are to have, in place of those of spheres",
-       .keys = {key(Type::distribution, sizes(&CellSizes::volume), "volume",
-                    "of a cell, in the scene's unit to the power of three"),
-                key(Type::distribution, sizes(&CellSizes::diameter), "diameter",
-                    "of a ball of the volume of a cell"),
+       .keys = {required(key(Type::distribution, sizes(&CellSizes::volume), "volume",
+                             "of a cell, in the scene's unit to the power of three")),
+                required(key(Type::distribution, sizes(&CellSizes::diameter), "diameter",
+                             "of a ball of the volume of a cell")),
                 integer(&CellSizes::rounds, "rounds",
                         "how often at most the spheres are packed again, so that their own cells come nearer "
                         "before weights do the rest",

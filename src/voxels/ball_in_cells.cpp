@@ -85,6 +85,7 @@ void BallInCells::make_layer(std::size_t k, std::vector<double>& layer) const {
 
 void BallInCells::add(double scale, double whole, double* to, std::ptrdiff_t stride_y,
                       std::ptrdiff_t stride_z) {
+  const double low = std::min(0.0, whole), high = std::max(0.0, whole);
   make_tables();
   const auto& [xs, ys, zs] = planes;
   const std::size_t nx = xs.size();
@@ -102,13 +103,14 @@ void BallInCells::add(double scale, double whole, double* to, std::ptrdiff_t str
         }
         const double volume =
             ((b0[i] - b0[i + 1]) - (b1[i] - b1[i + 1])) - ((a0[i] - a0[i + 1]) - (a1[i] - a1[i + 1]));
-        row[i] += std::clamp(scale * volume, 0.0, whole);
+        row[i] += std::clamp(scale * volume, low, high);
       }
     }
   }
 }
 
 void BallInCells::add_disc(double scale, double whole, double* to, std::ptrdiff_t stride_y) {
+  const double low = std::min(0.0, whole), high = std::max(0.0, whole);
   auto& [xs, ys, zs] = planes;
   for (auto* axis : {&xs, &ys})
     for (double& a : *axis) a = std::clamp(a, -1.0, 1.0);
@@ -120,7 +122,7 @@ void BallInCells::add_disc(double scale, double whole, double* to, std::ptrdiff_
         continue;
       }
       const double area = (quarter(a, b) - quarter(right, b)) - (quarter(a, top) - quarter(right, top));
-      to[i] += std::clamp(scale * area, 0.0, whole);
+      to[i] += std::clamp(scale * area, low, high);
     }
   }
 }

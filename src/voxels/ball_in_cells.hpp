@@ -31,7 +31,7 @@ class BallInCells {
   std::array<std::vector<double>, 3> planes;
 
   /// Adds `scale` times the volume in each cell, and exactly `whole` if the cell lies in the ball, to to[i +
-  /// j * stride_y + k * stride_z].
+  /// j * stride_y + k * stride_z]. Both may be negative, of a ball that is taken out.
   void add(double scale, double whole, double* to, std::ptrdiff_t stride_y, std::ptrdiff_t stride_z);
   /// The same for the areas of the unit disc in the cells of the first two axes.
   void add_disc(double scale, double whole, double* to, std::ptrdiff_t stride_y);

@@ -103,7 +103,7 @@ class Result:
         run(BERNAL, "pack", "scene.toml", "-o", "result", "--quiet", folder=folder)
         lines = (folder / "result" / "spheres.csv").read_text().splitlines()
         self.unit = lines[0].split()[-1]
-        self.spheres = [tuple(map(float, line.split(","))) for line in lines if line[0] in "-.0123456789"]
+        self.spheres = [tuple(map(float, line.split(",")[:4])) for line in lines if line[0] in "-.0123456789"]
         self.report = json.loads((folder / "result" / "report.json").read_text())
 
     def export(self, to, file, *options):

@@ -60,10 +60,15 @@ bool is_packing(const std::filesystem::path& file, const ImportOptions& options)
   }
 }
 
-/// Files of a few spheres in every format that export writes and import reads, and one of each other kind.
-std::map<std::string, std::string> valid_files() {
+Packing small_packing() {
   Packing packing = testing::exports::periodic();
   packing.spheres.resize(5);
+  return packing;
+}
+
+/// Files of a few spheres in every format that export writes and import reads, and one of each other kind.
+std::map<std::string, std::string> valid_files() {
+  const Packing packing = small_packing();
   std::map<std::string, std::string> files;
   for (const ImportFormat& format : import_formats()) {
     if (format.name == "table" || format.name == "dump" || format.name == "vtk") continue;
@@ -94,6 +99,8 @@ TEST(FuzzImport, EveryMutationIsAPackingOrAnError) {
     if (format == "esys" || format == "npy") some.unit = Unit::mm;
     if (format == "openmc") some.radius = 0.1;
     more.radius = some.radius;
+    if (format == "serpent")  // has the spheres in a file beside
+      write_export(small_packing(), output_of(format), folder / ("a." + format));
     const std::filesystem::path file = folder / ("a." + format);
     std::size_t accepted = 0;
     for (std::size_t i = 0; i < mutations; ++i) {

@@ -82,6 +82,20 @@ class Arrays(InFolder):
 
 
 class Layers(InFolder):
+    def test_cells_of_wanted_volumes_have_weights(self):
+        wanted = bernal.Lognormal(median=1, sigma=0.3, basis="number")
+        packing = bernal.pack(bernal.Scene(bernal.Periodic(), count=100, cells={"diameter": wanted}))
+        self.assertEqual(packing.outcome, "converged")
+        self.assertEqual((packing.weights.shape, packing.weights.dtype), ((100,), np.float64))
+        self.assertFalse(packing.weights.flags.writeable)
+        self.assertAlmostEqual(packing.weights.mean(), (packing.radii**2).mean())
+        self.assertEqual(packing.scene.cells["diameter"]["sigma"], 0.3)
+        self.assertTrue((pickle.loads(pickle.dumps(packing)).weights == packing.weights).all())
+        packing.write(self.folder / "out")
+        self.assertTrue((np.load(self.folder / "out" / "weights.npy") == packing.weights).all())
+        self.assertTrue((bernal.read(self.folder / "out").weights == packing.weights).all())
+        self.assertEqual(bernal.pack(small()).weights.size, 0)
+
     def test_layers_are_arrays_one_of_each(self):
         layers = [{"name": "core", "material": "glass", "material_density": 2500}, {"name": "coat", "thickness": 0.05}]
         packing = bernal.pack(small(layers=layers))

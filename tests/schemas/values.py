@@ -43,7 +43,7 @@ BAD = {
     "solids": ["[]", "1", '""', "[1]", '[{ kind = "periodic", edge = 1 }]', '[{ kind = "sphere" }]'],
     "table": ["[]", "1", '""', "{}", "[{ volume = 2 }]", "{ volume = 0 }", "{ volume = 1, diameter = 1 }",
               "{ volume = 1, rounds = -1 }", "{ volume = 1, name = 1 }"],
-    "tables": ["[]", "1", '""', "[1]", "{}"],
+    "tables": ["[]", "1", '""', "[1]"],
     "inside": ["[]", "1", '"inner.toml"', "[1]", "{}", "{ templates = 3 }", '{ scene = "inner.toml", templates = 0 }',
                '{ scene = "inner.toml", class = "a, b" }', '[{ scene = "inner.toml", turned = true }]'],
     "table_lists": ["[]", "1", "[1, 2]", '[{ name = "core" }, { name = "shell" }]', '[[{ share = 0.5 }], []]'],

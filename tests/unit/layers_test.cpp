@@ -184,7 +184,7 @@ TEST(Layers, ThatCannotBeAreOneLineWithItsPlace) {
   refused(of("{ name = \"a\" }, { name = \"b\", thickness = { mean = 0.5, sd = 0.1 } }"), 4,
           "give the thickness a \"max\"");
   refused(of("{ nam = \"a\" }"), 4, "did you mean \"name\"?");
-  refused("radius = 1\nlayers = 3", 4, "an array of tables { name = … }");
+  refused("radius = 1\nlayers = 3", 4, "one table { name = … }");
   refused(
       "layers = [{ name = \"a\" }]\nradius = { distribution = \"classes\", values = [1, 2], shares = [1, 1], "
       "layers = [[{ name = \"a\" }], []] }",

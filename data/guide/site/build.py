@@ -35,7 +35,7 @@ SECTIONS = [
         ("periodic", "A dense periodic box"), ("mesh", "Mesh a packing"), ("hand_over", "Hand over to LAMMPS"),
         ("engines", "Engines on many machines"),
         ("density", "How dense can it be"), ("settle", "Settle a bed"), ("measure", "Look and measure"),
-        ("layers", "Layers of spheres"), ("cells", "Cells: grains and foams"),
+        ("layers", "Layers of spheres"), ("nests", "Packings in spheres"), ("cells", "Cells: grains and foams"),
         ("cost", "Accuracy, time and cost"), ("sweep", "Many scenes at once"),
         ("checkpoints", "Runs that are ended and go on"),
         ("python", "From Python"))]),

@@ -35,7 +35,7 @@ void main() {
     float from_rim = (disc - length(p - ball.z * cutNormal)) * r / pixel;
     float rim = clamp(0.12 * disc * r / pixel, 0.6, 1.8);
     vec3 face = flatView > 0.5 ? base : mix(base, day, 0.22);
-    shaded = mix(darker(base, 0.55), face, smoothstep(rim - 0.6, rim + 0.6, from_rim));
+    shaded = discsOnly > 0.5 ? face : mix(darker(base, 0.55), face, smoothstep(rim - 0.6, rim + 0.6, from_rim));
     if (ball.w > 0.5) shaded = mix(accent, shaded, smoothstep(2.2 * rim, 2.2 * rim + 1.5, from_rim));
     strength = 0.25;
   } else if (discsOnly > 0.5) {
