@@ -39,6 +39,7 @@ Explanation explanation() {
                     "fill a CAD part, without a scene; results in bracket/"},
                    {"bernal verify out", "certify what stands in the files, from scratch"},
                    {"bernal measure out", "contacts, rattlers, g(r), sizes against those asked for"},
+                   {"bernal cells out --to neper -o grains.tess", "the cells around spheres, for Neper"},
                    {"bernal export out --to lammps -o out.data",
                     "for LAMMPS, YADE, OVITO, OpenMC, POV-Ray, …"},
                    {"bernal import dump.lammpstrj --unit mm -o out",
@@ -95,7 +96,7 @@ int main(int argc, char** argv) {
                        explanation(),
                        {},
                        {pack_command(), verify_command(), inspect_command(), explain_command(),
-                        cost_command(), sweep_command(), measure_command(), export_command(),
+                        cost_command(), sweep_command(), measure_command(), cells_command(), export_command(),
                         import_command(), predict_command(), design_command(), map_command()}};
     command.commands.insert(command.commands.begin() + 4, keys_command(command));
     command.commands.push_back(help_command(command));

@@ -9,6 +9,7 @@ Command explain_command();
 Command cost_command();
 Command sweep_command();
 Command measure_command();
+Command cells_command();
 Command predict_command();
 Command design_command();
 Command map_command();

@@ -7,6 +7,7 @@
 //   scene.sizes = Lognormal{.median = 0.5, .sigma = 0.2};
 //   const Packing packing = run(build(scene));
 
+#include "bernal/cells/write_cells.hpp"
 #include "bernal/fly/fly.hpp"
 #include "bernal/formats/export.hpp"
 #include "bernal/formats/import.hpp"
@@ -14,10 +15,12 @@
 #include "bernal/measure/measure.hpp"
 #include "bernal/predict/design.hpp"
 #include "bernal/predict/predict.hpp"
+#include "bernal/result/certify_levels.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/layer_amounts.hpp"
+#include "bernal/scene/nest.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/scene/sphere_layers.hpp"
 #include "bernal/settle/insert.hpp"

@@ -29,8 +29,16 @@ bool is_npy_file(const std::filesystem::path& file) {
 }
 
 std::string npy_header(std::size_t rows, std::size_t columns) {
-  std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},{}), }}", rows,
-                                   columns > 0 ? fmt::format(" {}", columns) : "");
+  std::vector<std::size_t> shape{rows};
+  if (columns > 0) shape.push_back(columns);
+  return npy_header("<f8", shape);
+}
+
+std::string npy_header(std::string_view type, std::span<const std::size_t> shape) {
+  std::string sizes;
+  for (const std::size_t size : shape) sizes += fmt::format("{}{},", sizes.empty() ? "" : " ", size);
+  if (shape.size() > 1) sizes.pop_back();
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, sizes);
   constexpr std::size_t lead = 10, alignment = 64;  // magic, version and length of the header stand before it
   header.resize((lead + header.size() + 1 + alignment - 1) / alignment * alignment - lead - 1, ' ');
   header += '\n';

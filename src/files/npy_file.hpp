@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "files/raw_numbers.hpp"
 #include "files/input_file.hpp"
+#include "files/raw_numbers.hpp"
 
 namespace bernal {
 
@@ -20,6 +20,8 @@ bool is_npy_file(const std::filesystem::path& file);
 /// The header of an .npy of version 1.0, padded to 64 bytes: doubles, little-endian, in C order, of shape
 /// (rows, columns) or, where `columns` is 0, (rows,). Source: numpy.lib.format.
 std::string npy_header(std::size_t rows, std::size_t columns);
+/// The same for numbers of another type, "<u4", and any shape.
+std::string npy_header(std::string_view type, std::span<const std::size_t> shape);
 
 inline constexpr std::string_view npy_magic = "\x93NUMPY";
 

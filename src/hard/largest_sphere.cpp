@@ -13,7 +13,7 @@ namespace bernal {
 LargestSphere largest_sphere_between(std::span<const Wall<3>> planes, const Bounds<3>& bounds) {
   const Vector<3> middle = bounds.center();
   const double unit = bounds.diagonal();
-  std::vector<HalfSpace<4>> spaces;
+  std::vector<Constraint<4>> spaces;
   for (const Wall<3>& plane : planes) {
     Vector<4> a;
     a << plane.along, 1;

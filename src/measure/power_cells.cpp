@@ -70,6 +70,8 @@ class Diagram {
       if (k >= box_.dimension) {
         lower[k] = -0.5;
         upper[k] = 0.5;
+        sides[2 * k] = below_plane;
+        sides[2 * k + 1] = above_plane;
       } else if (box_.boundary.repeats(k)) {  // half-way to the cell's own images
         lower[k] = -0.5 * box_.boundary.edges[k];
         upper[k] = 0.5 * box_.boundary.edges[k];
@@ -189,6 +191,12 @@ CellNeighbour neighbour_of(ConvexCell::Label label) {
   for (std::size_t k = 0; k < 3; ++k)
     made.image[k] = static_cast<int>(label % label_base / along_axis[k] % 3) - 1;
   return made;
+}
+
+ConvexCell::Label label_of(const CellNeighbour& neighbour) {
+  ConvexCell::Label label = label_base * neighbour.sphere + own_image;
+  for (std::size_t k = 0; k < 3; ++k) label += neighbour.image[k] * along_axis[k];
+  return label;
 }
 
 void for_each_power_cell(const Spheres<3>& spheres, const CellBox& box, std::size_t most,

@@ -26,6 +26,9 @@ struct CellNeighbour {
 /// What the label of a face means. Precondition: it is not negative. Those of the walls of the box are -1 to
 /// -6: below and above along x, then along y and z.
 CellNeighbour neighbour_of(ConvexCell::Label label);
+ConvexCell::Label label_of(const CellNeighbour&);
+/// The labels of the ends of prisms in two dimensions.
+inline constexpr ConvexCell::Label below_plane = -(ConvexCell::Label{1} << 40), above_plane = below_plane - 1;
 
 /// Receives the cell of a sphere, possibly empty, in coordinates about its centre in the period.
 using VisitCell = std::function<void(std::uint32_t sphere, const Vector<3>& center, const ConvexCell&)>;

@@ -59,13 +59,14 @@ std::vector<std::vector<double>> thicknesses_of(const std::vector<Layer>& layers
   for (const Layer& layer : layers)
     if (layer.thickness && layer.thickness->sd > 0) drawn.push_back(&*layer.thickness);
   if (drawn.empty()) return {{}};
-  // Steps of the R-sequence (Roberts 2018): powers of the root of x^(d+1) = x + 1 over one.
+  // Even along the first axis; along the d others steps of the R-sequence (Roberts 2018): powers of one over
+  // the root of x^(d+1) = x + 1.
   double root = 1.5;
-  const auto d = static_cast<double>(drawn.size());
+  const auto d = static_cast<double>(drawn.size() - 1);
   for (int k = 0; k < 60; ++k) root = std::pow(1 + root, 1 / (d + 1));
   std::vector<std::vector<double>> all(points_of_lattice);
   for (std::size_t axis = 0; axis < drawn.size(); ++axis) {
-    const double step = std::pow(root, -static_cast<double>(axis + 1));
+    const double step = axis == 0 ? 1.0 / points_of_lattice : std::pow(root, -static_cast<double>(axis));
     for (int k = 0; k < points_of_lattice; ++k) {
       const double u = (k + 0.5) * step;
       all[static_cast<std::size_t>(k)].push_back(

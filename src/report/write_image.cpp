@@ -54,6 +54,7 @@ Vector<3> first_center(const VoxelGrid& grid) {
 }  // namespace
 
 std::string meaning_of(const VoxelImage& image) {
+  if (!image.meaning.empty()) return image.meaning;
   switch (image.values) {
     case VoxelValues::binary:
       return "0 pore, 1 sphere, 2 outside the container";
@@ -127,12 +128,13 @@ _)",
 
 void write_raw(OutputFile& file, const VoxelImage& image, const Monitor& monitor) {
   constexpr std::size_t piece = std::size_t{1} << 20;  // keeps the file's buffer small
-  voxelise(
-      image.spheres, image.domain, image.grid, image.values,
-      [&](std::string_view layers) {
-        for (std::size_t k = 0; k < layers.size(); k += piece) file.append(layers.substr(k, piece));
-      },
-      monitor, image.layers);
+  const TakeLayers take = [&](std::string_view layers) {
+    for (std::size_t k = 0; k < layers.size(); k += piece) file.append(layers.substr(k, piece));
+  };
+  if (image.make)
+    image.make(image.spheres, image.domain, image.grid, take, monitor);
+  else
+    voxelise(image.spheres, image.domain, image.grid, image.values, take, monitor, image.layers);
 }
 
 std::string raw_header(const VoxelImage& image) {

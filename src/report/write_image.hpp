@@ -17,6 +17,10 @@ struct VoxelImage {
   std::string title;  ///< one line
   VoxelLayers layers = {};
   std::vector<std::string> names = {};  ///< what the values of layers stand for, from 1, or their fraction
+  std::string meaning = {};             ///< what the values of `make` mean
+  /// What makes the voxels of other images than `voxelise`, of four bytes.
+  void (*make)(const Spheres<dynamic>&, const Domain&, const VoxelGrid&, const TakeLayers&,
+               const Monitor&) = nullptr;
 };
 
 /// Explanation of the values: "0 pore, 1 sphere, 2 outside the container".

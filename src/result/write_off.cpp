@@ -32,7 +32,9 @@ std::string certified_walls(const Scene& scene) {
     text += fmt::format(" {} has changed since it was packed into; the walls are those that it holds now.",
                         plain_text(changed.string()));
   if (!scene.container.obstacles.empty())
-    text += " The walls are those of container.off, what obstacles leave of the container.";
+    text +=
+        " The walls are what obstacles leave of the container; where they are flat faces, those of "
+        "container.off.";
   const auto* file = std::get_if<MeshFile>(&scene.container);
   if (!file) return text;
   if (!file->repair.empty()) text += " The walls are those of the repaired surface, not of the file's.";

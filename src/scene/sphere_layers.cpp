@@ -208,7 +208,7 @@ void require_layers_of(const Scene& scene) {
   for (std::size_t k = 0; has_own && k < classes->layers.size(); ++k)
     require_fit(classes->layers[k], to_radius * classes->values[k], at, fmt::format(" of class {}", k + 1));
   if (has_own) return;
-  if (const auto* one = std::get_if<Constant>(&scene.sizes); one && scene.draws())
+  if (const auto* one = std::get_if<Constant>(&scene.sizes); one && scene.draws() && !scene.cells)
     require_layers_fit(scene, to_radius * one->value, to_radius * one->value);
   const std::vector<double>* sizes = classes ? &classes->values : nullptr;
   if (const auto* list = std::get_if<ListedSizes>(&scene.sizes)) sizes = &list->values;

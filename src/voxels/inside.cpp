@@ -33,7 +33,7 @@ PlanePoint at_height(const Vector<3>& p, const Vector<3>& q, double z) {
 
 }  // namespace
 
-Inside::Inside(const Domain& domain, const VoxelGrid& grid) : domain_(domain), grid_(grid) {
+InsideOfDomain::InsideOfDomain(const Domain& domain, const VoxelGrid& grid) : domain_(domain), grid_(grid) {
   const auto* mesh = std::get_if<Mesh>(&domain);
   if (!mesh) return;
   for (const auto& [i, j, k] : mesh->triangles) {
@@ -42,7 +42,7 @@ Inside::Inside(const Domain& domain, const VoxelGrid& grid) : domain_(domain), g
   }
 }
 
-std::int64_t Inside::row_from(double y) const {
+std::int64_t InsideOfDomain::row_from(double y) const {
   const std::int64_t n = grid_.count[1];
   const double guess = std::ceil((y - grid_.corner[1]) / grid_.spacing[1] - 0.5);
   auto row = static_cast<std::int64_t>(std::clamp(guess, 0.0, static_cast<double>(n)));
@@ -51,7 +51,7 @@ std::int64_t Inside::row_from(double y) const {
   return row;
 }
 
-void Inside::add(std::int64_t row, const Interval& x, std::vector<InsideRun>& out) const {
+void InsideOfDomain::add(std::int64_t row, const Interval& x, std::vector<InsideRun>& out) const {
   if (!(x[0] <= x[1])) return;
   const auto n = static_cast<double>(grid_.count[0]);
   const auto place = [&](double at) { return (at - grid_.corner[0]) / grid_.spacing[0] - 0.5; };
@@ -64,7 +64,7 @@ void Inside::add(std::int64_t row, const Interval& x, std::vector<InsideRun>& ou
   if (first <= last) out.push_back({row, first, last});
 }
 
-Inside::Interval Inside::interval(const Box& box, double y, double z) const {
+InsideOfDomain::Interval InsideOfDomain::interval(const Box& box, double y, double z) const {
   const double at[] = {0, y, z};
   Interval x = {-infinity, infinity};
   for (int k = 0; k < box.dimension(); ++k) {
@@ -79,7 +79,7 @@ Inside::Interval Inside::interval(const Box& box, double y, double z) const {
   return x;
 }
 
-Inside::Interval Inside::interval(const Cylinder& cylinder, double y, double z) const {
+InsideOfDomain::Interval InsideOfDomain::interval(const Cylinder& cylinder, double y, double z) const {
   const Vector<3> axis = cylinder.axis.stableNormalized(),
                   from(0, y - cylinder.base[1], z - cylinder.base[2]);
   // Points from + x e, with x measured from the base, split into parts along the axis and normal to it.
@@ -98,13 +98,13 @@ Inside::Interval Inside::interval(const Cylinder& cylinder, double y, double z) 
   return {x[0] + cylinder.base[0], x[1] + cylinder.base[0]};
 }
 
-Inside::Interval Inside::interval(const Sphere& sphere, double y, double z) const {
+InsideOfDomain::Interval InsideOfDomain::interval(const Sphere& sphere, double y, double z) const {
   const double dy = y - sphere.center[1], dz = z - sphere.center[2];
   const Interval x = below_zero(1, 0, dy * dy + dz * dz - sphere.radius * sphere.radius);
   return {x[0] + sphere.center[0], x[1] + sphere.center[0]};
 }
 
-void Inside::cross(const Mesh& mesh, double z, std::vector<Crossing>& out) const {
+void InsideOfDomain::cross(const Mesh& mesh, double z, std::vector<Crossing>& out) const {
   for (std::size_t t = 0; t < heights_.size(); ++t) {
     if (!(heights_[t][0] <= z && z < heights_[t][1])) continue;
     const auto& corners = mesh.triangles[t];
@@ -124,7 +124,7 @@ void Inside::cross(const Mesh& mesh, double z, std::vector<Crossing>& out) const
   }
 }
 
-void Inside::cross(const Polygon& polygon, double, std::vector<Crossing>& out) const {
+void InsideOfDomain::cross(const Polygon& polygon, double, std::vector<Crossing>& out) const {
   for (const auto& loop : polygon.loops) {
     for (std::size_t k = 0; k < loop.size(); ++k) {
       Vector<2> p = loop[k], q = loop[(k + 1) % loop.size()];
@@ -140,7 +140,7 @@ void Inside::cross(const Polygon& polygon, double, std::vector<Crossing>& out) c
 }
 
 /// Between two neighbours among all places where the line meets what edges sweep over, the middle tells.
-std::vector<Inside::Interval> Inside::parts(const Revolved& solid, double y, double z) const {
+std::vector<InsideOfDomain::Interval> InsideOfDomain::parts(const Revolved& solid, double y, double z) const {
   const Vector<3> axis = solid.axis.stableNormalized(), from(0, y - solid.base[1], z - solid.base[2]);
   const double along = from.dot(axis), slope = axis[0];
   const Vector<3> across = from - along * axis, step = Vector<3>::UnitX() - slope * axis;
@@ -185,7 +185,7 @@ std::vector<Inside::Interval> Inside::parts(const Revolved& solid, double y, dou
   return found;
 }
 
-void Inside::layer(std::int64_t k, std::vector<InsideRun>& out) const {
+void InsideOfDomain::layer(std::int64_t k, std::vector<InsideRun>& out) const {
   out.clear();
   const double z = grid_.center(2, k);
   std::visit(

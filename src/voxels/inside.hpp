@@ -18,10 +18,10 @@ struct InsideRun {
 /// A line through the centres of a row crosses the facets of a mesh an even number of times, even through
 /// edges and vertices: on which side it passes an edge is decided by the same doubles for both facets, and a
 /// point on the edge counts for one side. Const, and safe for several threads.
-class Inside {
+class InsideOfDomain {
  public:
   /// Both must outlive this.
-  Inside(const Domain& domain, const VoxelGrid& grid);
+  InsideOfDomain(const Domain& domain, const VoxelGrid& grid);
 
   /// Replaces `out` by the runs of a layer, rows ascending. Cost: some ns a row, and for a mesh 1 ns a
   /// triangle.

@@ -255,7 +255,7 @@ class Image {
   Vector<3> periods_;
   VoxelValues values_;
   const VoxelLayers& layers_;
-  std::optional<Inside> inside_;
+  std::optional<InsideOfDomain> inside_;
 };
 
 /// Each sphere is drawn once an image; a sphere of a packing has at most eight.

@@ -8,7 +8,7 @@ namespace bernal {
 
 /// a·x <= b
 template <int D>
-struct HalfSpace {
+struct Constraint {
   Vector<D> a;
   double b;
 };
@@ -20,14 +20,14 @@ inline constexpr double rounding = 1e-13;
 
 /// Without component k, which is (plane.b - rest of plane.a · rest of x) / plane.a[k].
 template <int D>
-Vector<D - 1> without(const Vector<D>& v, int k, const HalfSpace<D>& plane) {
+Vector<D - 1> without(const Vector<D>& v, int k, const Constraint<D>& plane) {
   Vector<D - 1> rest;
   for (int from = 0, to = 0; from < D; ++from)
     if (from != k) rest[to++] = v[from] - v[k] / plane.a[k] * plane.a[from];
   return rest;
 }
 template <int D>
-HalfSpace<D - 1> on_plane(const HalfSpace<D>& h, int k, const HalfSpace<D>& plane) {
+Constraint<D - 1> on_plane(const Constraint<D>& h, int k, const Constraint<D>& plane) {
   return {without<D>(h.a, k, plane), h.b - h.a[k] / plane.a[k] * plane.b};
 }
 
@@ -39,7 +39,7 @@ HalfSpace<D - 1> on_plane(const HalfSpace<D>& h, int k, const HalfSpace<D>& plan
 /// Cost: O(half-spaces), expected, if their order is random. Source: Seidel, Discrete Comput. Geom. 6, 423
 /// (1991).
 template <int D>
-Vector<D> optimum(const Vector<D>& goal, const std::vector<HalfSpace<D>>& spaces, const Bounds<D>& box) {
+Vector<D> optimum(const Vector<D>& goal, const std::vector<Constraint<D>>& spaces, const Bounds<D>& box) {
   using linear_programme::rounding;
   if constexpr (D == 1) {
     double from = box.lower[0], to = box.upper[0];
@@ -51,11 +51,11 @@ Vector<D> optimum(const Vector<D>& goal, const std::vector<HalfSpace<D>>& spaces
   } else {
     Vector<D> x = (goal.array() > 0).select(box.upper, box.lower);
     for (std::size_t i = 0; i < spaces.size(); ++i) {
-      const HalfSpace<D>& plane = spaces[i];
+      const Constraint<D>& plane = spaces[i];
       if (plane.a.dot(x) <= plane.b + rounding) continue;
       int k;
       if (!(plane.a.cwiseAbs().maxCoeff(&k) > rounding)) continue;
-      std::vector<HalfSpace<D - 1>> rest;
+      std::vector<Constraint<D - 1>> rest;
       rest.push_back(linear_programme::on_plane<D>({Vector<D>::Unit(k), box.upper[k]}, k, plane));
       rest.push_back(linear_programme::on_plane<D>({-Vector<D>::Unit(k), -box.lower[k]}, k, plane));
       for (std::size_t j = 0; j < i; ++j) rest.push_back(linear_programme::on_plane<D>(spaces[j], k, plane));

@@ -53,7 +53,7 @@ std::vector<NearFacet> nearest_facets(const Container& container, const Vector<3
 
 /// The step, in units of its greatest length, that leaves the most room beyond what there is.
 Vector<3> uphill(const std::vector<Obstacle>& obstacles, double room, double step, int dimension) {
-  std::vector<HalfSpace<4>> spaces;
+  std::vector<Constraint<4>> spaces;
   for (const Obstacle& o : obstacles) {
     Vector<4> a;
     a << -o.away, 1;
@@ -67,7 +67,7 @@ Vector<3> uphill(const std::vector<Obstacle>& obstacles, double room, double ste
 /// The step, in units of its greatest length, that goes farthest along the direction and keeps the room.
 Vector<3> along(const Vector<3>& direction, const std::vector<Obstacle>& obstacles, double room, double step,
                 int dimension) {
-  std::vector<HalfSpace<3>> spaces;
+  std::vector<Constraint<3>> spaces;
   for (const Obstacle& o : obstacles) spaces.push_back({-o.away, std::max(0.0, o.distance - room) / step});
   const Vector<3> most(1, 1, dimension == 2 ? 0 : 1);
   return optimum<3>(direction, spaces, {-most, most});

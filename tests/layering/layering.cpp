@@ -163,6 +163,40 @@ std::vector<std::string> option_words(const fs::path& root) {
   return found;
 }
 
+std::vector<std::string> doubled_classes(const fs::path& root) {
+  static const std::regex opens(R"(^(?:inline )?namespace(?: ([\w:]+))? \{$)"),
+      closes(R"(^\}  // namespace.*)"), defines(R"(^(?:struct|class) (\w+)(?: final)?(?: : [^{]*)? \{.*)");
+  std::map<std::string, std::set<std::string>> files;
+  for (const char* top : {"src", "include"}) {
+    if (!fs::exists(root / top)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      if (!is_source(entry.path())) continue;
+      std::vector<std::string> spaces;
+      std::ifstream in(entry.path());
+      for (std::string text; std::getline(in, text);) {
+        std::smatch match;
+        if (std::regex_match(text, match, opens)) {
+          spaces.push_back(match[1].matched ? match[1].str() + "::" : "");
+        } else if (std::regex_match(text, closes) && !spaces.empty()) {
+          spaces.pop_back();
+        } else if (std::regex_match(text, match, defines) && !std::count(spaces.begin(), spaces.end(), "")) {
+          std::string name;
+          for (const std::string& space : spaces) name += space;
+          files[name + match[1].str()].insert(fs::relative(entry.path(), root).string());
+        }
+      }
+    }
+  }
+  std::vector<std::string> found;
+  for (const auto& [name, where] : files) {
+    if (where.size() < 2) continue;
+    std::string text;
+    for (const std::string& file : where) text += (text.empty() ? "" : ", ") + file;
+    found.push_back(name + ": " + text);
+  }
+  return found;
+}
+
 std::map<std::string, Rule> read_rules(const fs::path& readme) {
   std::ifstream in(readme);
   if (!in) throw std::runtime_error("cannot read " + readme.string());

@@ -31,4 +31,9 @@ std::vector<std::string> violations(const std::filesystem::path& root,
 /// their value behind "=", and properties of style sheets are none of these.
 std::vector<std::string> option_words(const std::filesystem::path& root);
 
+/// Every class that a file below src/ or include/ of `root` defines though another one defines a class of
+/// that name in the same namespace, as "name: file, file": to the linker they are one, and what it makes of
+/// one of them it uses for the other. Classes in namespaces without a name are none of these.
+std::vector<std::string> doubled_classes(const std::filesystem::path& root);
+
 }  // namespace bernal::layering

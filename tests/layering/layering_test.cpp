@@ -85,12 +85,35 @@ TEST(Layering, PlantedOptionWordsAreFound) {
   };
   EXPECT_EQ(words_in("\n// \"--no\"\nf('\"', \"a \\\" give --with-mesh\");").at(0),
             "src/core/a.cpp:3: --with-mesh");
-  for (const char* text : {"f(\"--unit: {}\");", "f(\"(see --help)\");", "f(R\"(\"give --box\")\");",
-                           "f(\"by -o, or\");"})
+  for (const char* text :
+       {"f(\"--unit: {}\");", "f(\"(see --help)\");", "f(R\"(\"give --box\")\");", "f(\"by -o, or\");"})
     EXPECT_EQ(words_in(text).size(), 1u) << text;
   for (const char* text : {"--count;", "// give --unit", "/* \" */ --k; /* \" */", "f(\"mpi --mpi=pmix\");",
                            "f(\"{ --ink:#111; fill:var(--ink) }\");", "f(\"non-overlapping a--b\");"})
     EXPECT_TRUE(words_in(text).empty()) << text;
+}
+
+TEST(Layering, NoTwoClassesAreOneToTheLinker) {
+  for (const std::string& doubled : doubled_classes(source)) ADD_FAILURE() << doubled;
+}
+
+TEST(Layering, PlantedClassesOfOneNameAreFound) {
+  const auto found_with = [](const std::string& text) {
+    const fs::path root = scratch();
+    fs::create_directories(root / "src/b");
+    std::ofstream(root / "src/b/b.hpp")
+        << "namespace bernal {\nstruct Inside {\n};\n}  // namespace bernal\n";
+    const auto found = found_in("src/a/a.cpp", text, &doubled_classes);
+    fs::remove_all(root);
+    return found;
+  };
+  EXPECT_EQ(found_with("namespace bernal {\nclass Inside final : Side {\n};\n}  // namespace bernal").at(0),
+            "bernal::Inside: src/a/a.cpp, src/b/b.hpp");
+  for (const char* text :
+       {"namespace bernal {\nstruct Inside;\n}  // namespace bernal",
+        "namespace bernal::voxels {\nclass Inside {\n};",
+        "namespace bernal {\nnamespace {\nstruct Inside {\n};\n}  // namespace\n}  // namespace bernal"})
+    EXPECT_TRUE(found_with(text).empty()) << text;
 }
 
 TEST(Layering, PlantedViolationsAreFound) {

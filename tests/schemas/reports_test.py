@@ -31,6 +31,7 @@ RUNS = {
     "five dimensions": ("converged", '[container]\nkind = "periodic"\ndimension = 5\nedge = 5\n[spheres]\ncount = 40\n'
                         'radius = 1\n[[stage]]\ndo = "fly"\n'),
     "gaps": ("converged", COLUMN + "[spheres]\ncount = 30\nradius = 0.5\ngap = 0.05\nwall_gap = 0.1\n"),
+    "cells": ("converged", BOX + 'count = 60\ncells = { volume = { distribution = "uniform", min = 1, max = 2, basis = "number" } }\n'),
     "one sphere": ("converged", COLUMN + "[spheres]\ncount = 1\nradius = 1\n"),
     "between walls": ("converged", '[container]\nkind = "periodic"\nsize = [6, 6, 6]\nwalls = [2]\n[spheres]\ncount = 30\n'
                       'radius = 0.6\n[[stage]]\ndo = "fly"\n'),

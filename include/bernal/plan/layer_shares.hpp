@@ -18,7 +18,8 @@ struct LayerShare {
 ///   ∫ v(r, t) dF(r) dG(t) / ∫ (4π/3) r³ dF(r),
 /// with the volume v of the layer in a sphere of radius r and with drawn thicknesses t. Volumes of intervals
 /// of sizes are exact, also in the tail; within them the mean size stands for all, to 1e-6 of a share.
-/// Thicknesses are taken at 4,096 points of a lattice, to 1e-5. Empty where the scene names no layers.
+/// Thicknesses are taken at 4,096 evenly spread points, to 1e-5 of a share. Empty where the scene names no
+/// layers.
 ///
 /// Throws Error{bad_scene} for layers that are thicker than the spheres, and where zones have sizes of their
 /// own. Precondition: the scene is complete. Cost: up to 0.5 s.
