@@ -6,6 +6,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "bernal/cells/write_cells.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/report/picture.hpp"
 #include "bernal/report/section.hpp"
@@ -191,6 +192,79 @@ py::dict contacts_of(const Packing& packing, double contact_gap) {
   return all;
 }
 
+/// An array with `columns` numbers a row; value(row, column).
+template <class T, class Value>
+py::array_t<T> table_of(std::size_t rows, std::size_t columns, const Value& value) {
+  py::array_t<T> made(
+      std::vector<py::ssize_t>{static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
+  T* to = made.mutable_data();
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t k = 0; k < columns; ++k) *to++ = static_cast<T>(value(i, k));
+  return made;
+}
+
+/// A column of the shapes of cells.
+template <class T, class Value>
+py::array_t<T> column_of(const std::vector<CellShape>& shapes, const Value& value) {
+  py::array_t<T> made(static_cast<py::ssize_t>(shapes.size()));
+  T* to = made.mutable_data();
+  for (const CellShape& shape : shapes) *to++ = static_cast<T>(value(shape));
+  return made;
+}
+
+py::dict cells_of_packing(const Packing& packing, int flat_sides) {
+  Cells cells;
+  std::vector<CellShape> shapes;
+  {
+    const Unlocked others_run;
+    cells = cells_of(packing, {flat_sides});
+    shapes = shapes_of(cells);
+  }
+  const auto d = static_cast<std::size_t>(cells.dimension);
+  const auto or_none = [](std::uint32_t number) {
+    return number == Cells::none ? std::int64_t{-1} : static_cast<std::int64_t>(number);
+  };
+  const auto axis = [](std::size_t k) { return static_cast<Eigen::Index>(k); };
+  py::dict all;
+  all["corners"] = table_of<double>(cells.corners.size(), d,
+                                    [&](std::size_t i, std::size_t k) { return cells.corners[i][axis(k)]; });
+  all["periods"] =
+      table_of<double>(1, d, [&](std::size_t, std::size_t k) { return cells.periods[axis(k)]; }).attr("ravel")();
+  all["first_corner"] = copy_of(cells.first_corner);
+  all["face_corners"] =
+      table_of<std::int64_t>(cells.corners_of_faces.size(), 1, [&](std::size_t i, std::size_t) {
+        return cells.corners_of_faces[i].corner;
+      }).attr("ravel")();
+  all["corner_images"] =
+      table_of<std::int64_t>(cells.corners_of_faces.size(), d, [&](std::size_t i, std::size_t k) {
+        return cells.corners_of_faces[i].image[k];
+      });
+  all["face_cells"] = table_of<std::int64_t>(cells.faces.size(), 2, [&](std::size_t i, std::size_t k) {
+    return k == 0 ? or_none(cells.faces[i].cell) : or_none(cells.faces[i].beyond);
+  });
+  all["face_images"] = table_of<std::int64_t>(
+      cells.faces.size(), d, [&](std::size_t i, std::size_t k) { return cells.faces[i].image[k]; });
+  all["face_walls"] = table_of<std::int64_t>(cells.faces.size(), 1, [&](std::size_t i, std::size_t) {
+                        return or_none(cells.faces[i].wall);
+                      }).attr("ravel")();
+  all["first_side"] = copy_of(cells.first_side);
+  all["cell_faces"] = table_of<std::int64_t>(cells.sides.size(), 1, [&](std::size_t i, std::size_t) {
+                        return cells.sides[i].face;
+                      }).attr("ravel")();
+  all["from_beyond"] = table_of<bool>(cells.sides.size(), 1, [&](std::size_t i, std::size_t) {
+                         return cells.sides[i].beyond;
+                       }).attr("ravel")();
+  all["volumes"] = column_of<double>(shapes, [](const CellShape& shape) { return shape.volume; });
+  all["surfaces"] = column_of<double>(shapes, [](const CellShape& shape) { return shape.surface; });
+  all["centroids"] = table_of<double>(
+      shapes.size(), d, [&](std::size_t i, std::size_t k) { return shapes[i].centroid[axis(k)]; });
+  all["sphericity"] = column_of<double>(shapes, [](const CellShape& shape) { return shape.sphericity; });
+  all["aspect"] = column_of<double>(shapes, [](const CellShape& shape) { return shape.aspect; });
+  all["faces"] = column_of<std::int64_t>(shapes, [](const CellShape& shape) { return shape.faces; });
+  all["neighbours"] = column_of<std::int64_t>(shapes, [](const CellShape& shape) { return shape.neighbours; });
+  return all;
+}
+
 std::string section_of_packing(const Packing& packing, const std::optional<std::string>& plane) {
   if (packing.spheres.dimension() != 3)
     throw Error(ErrorCode::bad_argument, "sections are for packings of three dimensions");
@@ -223,6 +297,7 @@ void bind_packing(py::module_& module) {
       .def("section", &section_of_packing, OthersRun())
       .def("coordination", &coordination_of, OthersRun())
       .def("contacts", &contacts_of)
+      .def("cells", &cells_of_packing)
       .def(
           "hash", [](const Packing& packing) { return hash_of(packing.spheres); }, OthersRun())
       .def("domain", [](const Packing& packing) { return name_of(packing.domain); })

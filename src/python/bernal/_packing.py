@@ -313,6 +313,23 @@ class Packing:
         """
         return Record(self._core.contacts(_gap_ratio(gap)))
 
+    def cells(self, sides: int = 64) -> Record:
+        """The cells of the power (Laguerre) diagram as polyhedra, in the plane as polygons, that share corners and faces,
+        as `bernal cells` writes them, in the scene's unit. With N spheres, V corners, F faces and D dimensions:
+
+        corners of shape (V, D), each once a period; periods of shape (D,), 0 along axes that have none.
+        first_corner of shape (F + 1,): the corners of face f are face_corners[first_corner[f]:first_corner[f + 1]], each
+        moved by as many periods as its row of corner_images says, anticlockwise seen from outside the first of its
+        face_cells (F, 2). The second, moved by the face_images (F, D), is behind it, or -1 at a wall; face_walls (F,)
+        are the numbers of walls, or -1.
+        first_side of shape (N + 1,): the faces of cell i are cell_faces[first_side[i]:first_side[i + 1]]; where
+        from_beyond says so, cell i is behind the face, which has to be moved back by its image. An empty cell has none.
+        volumes, surfaces, centroids (N, D), sphericity, aspect, faces and neighbours of shape (N,).
+
+        sides : flat walls around a round one, 8 to 1024.
+        """
+        return Record(self._core.cells(_toml.whole(sides, "sides", 1024)))
+
     @property
     def history(self) -> list[Record]:
         """The state after each stage, or each round of a stage: stage, spheres, packing_fraction, potential (mean
