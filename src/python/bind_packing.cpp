@@ -228,17 +228,17 @@ py::dict cells_of_packing(const Packing& packing, int flat_sides) {
   py::dict all;
   all["corners"] = table_of<double>(cells.corners.size(), d,
                                     [&](std::size_t i, std::size_t k) { return cells.corners[i][axis(k)]; });
-  all["periods"] =
-      table_of<double>(1, d, [&](std::size_t, std::size_t k) { return cells.periods[axis(k)]; }).attr("ravel")();
+  all["periods"] = table_of<double>(1, d, [&](std::size_t, std::size_t k) {
+                     return cells.periods[axis(k)];
+                   }).attr("ravel")();
   all["first_corner"] = copy_of(cells.first_corner);
   all["face_corners"] =
       table_of<std::int64_t>(cells.corners_of_faces.size(), 1, [&](std::size_t i, std::size_t) {
         return cells.corners_of_faces[i].corner;
       }).attr("ravel")();
-  all["corner_images"] =
-      table_of<std::int64_t>(cells.corners_of_faces.size(), d, [&](std::size_t i, std::size_t k) {
-        return cells.corners_of_faces[i].image[k];
-      });
+  all["corner_images"] = table_of<std::int64_t>(
+      cells.corners_of_faces.size(), d,
+      [&](std::size_t i, std::size_t k) { return cells.corners_of_faces[i].image[k]; });
   all["face_cells"] = table_of<std::int64_t>(cells.faces.size(), 2, [&](std::size_t i, std::size_t k) {
     return k == 0 ? or_none(cells.faces[i].cell) : or_none(cells.faces[i].beyond);
   });
@@ -261,7 +261,8 @@ py::dict cells_of_packing(const Packing& packing, int flat_sides) {
   all["sphericity"] = column_of<double>(shapes, [](const CellShape& shape) { return shape.sphericity; });
   all["aspect"] = column_of<double>(shapes, [](const CellShape& shape) { return shape.aspect; });
   all["faces"] = column_of<std::int64_t>(shapes, [](const CellShape& shape) { return shape.faces; });
-  all["neighbours"] = column_of<std::int64_t>(shapes, [](const CellShape& shape) { return shape.neighbours; });
+  all["neighbours"] =
+      column_of<std::int64_t>(shapes, [](const CellShape& shape) { return shape.neighbours; });
   return all;
 }
 
