@@ -26,7 +26,8 @@ from . import _core, design
 from ._classes import CLASSES, Container, Engine, Output, Sizes, Stage
 from ._errors import EngineError, Error, InputError, KeywordError, WriteError
 from ._jobs import NotReached, Stopped
-from ._packing import Packing, Picture, View
+from ._packing import Packing
+from ._pictures import Picture, View
 from ._records import Certificate, Inspection, Measurements, Plan, Prediction, Record, Written
 from ._scene import Scene
 from ._work import explain, export, from_arrays, import_, inspect, measure, pack, predict, read, verify
