@@ -213,8 +213,16 @@ class CellRun {
       cells.quantiles.push_back({share, cells.scale * stated_.volume_of(stated_.sizes->quantile(share)),
                                  by_radii[at], reached[at]});
     }
-    packing.reason +=
-        fmt::format("; the cells have the volumes asked for, within {:.1g} of each", cells.error);
+    if (cells.error < same_volume) {
+      packing.reason +=
+          fmt::format("; the cells have the volumes asked for, within {:.1g} of each", cells.error);
+    } else {
+      if (packing.outcome == Outcome::converged) packing.outcome = Outcome::hit_limit;
+      packing.reason += fmt::format(
+          "; the cells do not have the volumes asked for: after {} step{} of their weights the farthest is "
+          "{:.2g} of its volume off; ask for a narrower distribution",
+          cells.steps, cells.steps == 1 ? "" : "s", cells.error);
+    }
     packing.weights = std::move(found.weights);
     packing.cells = std::move(cells);
     packing.effects.push_back(effect);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/layers_of_scene.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal::schema {
@@ -49,6 +50,16 @@ void thickness_rule(const Normal& of, const Section& section) {
     section.refuse("max", fmt::format("must be near the \"mean\" or above it, but {} is less than a tenth "
                                       "of {}",
                                       *of.max, of.mean));
+  const double low = of.mean - deviations_of_thickness * of.sd;
+  const double high = of.mean + deviations_of_thickness * of.sd;
+  const auto refuse_beyond = [&](std::string_view key, double limit, std::string_view side, double given) {
+    section.refuse(key, fmt::format("must be {} {:.6g}, which is {:g} standard deviations from the mean: "
+                                    "nothing is drawn beyond it, but {} is asked for; change it, the "
+                                    "\"mean\" or the \"sd\"",
+                                    side, limit, deviations_of_thickness, given));
+  };
+  if (of.min && *of.min >= high) refuse_beyond("min", high, "below", *of.min);
+  if (of.max && *of.max <= low) refuse_beyond("max", low, "above", *of.max);
 }
 
 }  // namespace

@@ -12,6 +12,9 @@ namespace bernal {
 std::string place_layers(const std::vector<Layer>& layers, double radius, std::span<const double> thickness,
                          std::span<double> outer);
 
+/// Deviations from the mean beyond which no thickness is drawn: where it is cut if nothing else is said.
+inline constexpr double deviations_of_thickness = 6;
+
 /// The thickness that is drawn at u in (0, 1): the quantile of the cut normal distribution.
 double thickness_at(const Normal& thickness, double u);
 
@@ -22,6 +25,9 @@ void require_layers(const Scene&);
 /// The same where the sizes are drawn: spheres of these radii have to hold the layers that all have, as thick
 /// as they may be. Drawn thicknesses end at their `max`, or six standard deviations above the mean.
 void require_layers_fit(const Scene&, double smallest, double largest);
+
+/// The same where a stage changes all sizes: the layers of a sphere have to end at its surface all the same.
+void require_layers_that_stretch(const Scene&);
 
 /// Throws Error{bad_scene} where an output asks for layers or materials that a scene does not have.
 void require_layers_of_output(const Output&, const Scene&);

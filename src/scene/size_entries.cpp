@@ -173,7 +173,11 @@ Key file(std::string_view help) { return required(key(Type::file, {}, "file", he
 std::string instead_of(const Entry& sizes, std::string_view key, const Numbers& number) {
   if (&sizes == &size_entries()[SceneSizes(Lognormal{}).index()]) return instead_in_lognormal(key, number);
   if (&sizes == &size_entries()[SceneSizes(Normal{}).index()]) return instead_in_normal(key, number);
-  return {};
+  if (&sizes != &thickness_entry()) return {};
+  if (std::ranges::any_of(size_entries(), [&](const Entry& other) { return other.find(key) != nullptr; }))
+    return "; the thickness of layers has distribution = \"normal\" only, by number: give its \"mean\" and "
+           "\"sd\"";
+  return instead_in_normal(key, number);
 }
 
 /// Lengths are diameters of grains there, but for what says otherwise.

@@ -16,17 +16,15 @@
 namespace bernal {
 namespace {
 
-/// Deviations from the mean at which a thickness is cut where nothing else is said, as sizes are.
-constexpr double nothing_beyond = 6;
 constexpr double rounding = 1e-9;  ///< of layers that are to end at the surface, over the radius
 
-double thickest(const Normal& of) { return of.max.value_or(of.mean + nothing_beyond * of.sd); }
+double thickest(const Normal& of) { return of.max.value_or(of.mean + deviations_of_thickness * of.sd); }
 
 /// A normal thickness, cut: one number gives one.
 struct DrawnThickness {
   explicit DrawnThickness(const Normal& thickness)
       : of(thickness),
-        min(of.min.value_or(std::max(rounding * of.mean, of.mean - nothing_beyond * of.sd))),
+        min(of.min.value_or(std::max(rounding * of.mean, of.mean - deviations_of_thickness * of.sd))),
         max(thickest(of)),
         below(normal_below((min - of.mean) / of.sd)),
         share(normal_below((max - of.mean) / of.sd) - below) {}
@@ -40,6 +38,9 @@ struct DrawnThickness {
 };
 
 double cube(double r) { return r * r * r; }
+
+/// It takes what the others leave.
+bool is_open(const Layer& layer) { return !layer.thickness && !layer.radius && !layer.share; }
 
 /// The layers of one class, and what is drawn for each of them.
 struct ClassLayers {
@@ -73,7 +74,7 @@ std::string place_layers(const std::vector<Layer>& layers, double radius, std::s
   std::size_t open = n, drawn = 0;
   for (std::size_t k = 0; k < n; ++k) {
     if (const auto& of = layers[k].thickness) thick[k] = of->sd > 0 ? thickness[drawn++] : of->mean;
-    if (!layers[k].thickness && !layers[k].radius && !layers[k].share) open = k;
+    if (is_open(layers[k])) open = k;
   }
   double inner = 0;
   for (std::size_t k = 0; k < open; ++k) {
@@ -203,7 +204,12 @@ void require_layers_of(const Scene& scene) {
     fail(at, "layers",
          "how large the \"largest\" spheres are is found out: give their layers each a \"share\", not a "
          "thickness or a radius");
-  if (scene.largest) return;
+  if (scene.largest) {  // they are shares, which end alike in spheres of any radius
+    std::vector<double> outer(scene.layers.size());
+    const std::string why = place_layers(scene.layers, 1, {}, outer);
+    if (!why.empty()) fail(at, "layers", fmt::format("the \"layers\" do not fit, of a radius of 1: {}", why));
+    return;
+  }
   const double to_radius = scene.scale * (scene.sizes_are_diameters ? 0.5 : 1);
   for (std::size_t k = 0; has_own && k < classes->layers.size(); ++k)
     require_fit(classes->layers[k], to_radius * classes->values[k], at, fmt::format(" of class {}", k + 1));
@@ -222,6 +228,21 @@ void require_layers_of(const Scene& scene) {
 void require_layers_fit(const Scene& scene, double smallest, double largest) {
   require_fit(scene.layers, smallest, scene.locations, "");
   require_fit(scene.layers, largest, scene.locations, "");
+}
+
+void require_layers_that_stretch(const Scene& scene) {
+  const auto require = [](const std::vector<Layer>& layers, const Locations& at, const std::string& whose) {
+    if (std::ranges::any_of(layers, is_open) || std::ranges::none_of(layers, has_length)) return;
+    fail(at, "layers",
+         fmt::format("the \"layers\"{} end at one radius, and \"polish\" lets all sizes grow until the "
+                     "spheres jam: leave one layer without thickness, radius and share, which then takes "
+                     "what the others leave, or give all of them shares",
+                     whose));
+  };
+  require(scene.layers, scene.locations, "");
+  if (const auto* classes = std::get_if<Classes>(&scene.sizes))
+    for (std::size_t k = 0; k < classes->layers.size(); ++k)
+      require(classes->layers[k], scene.sizes.locations, fmt::format(" of class {}", k + 1));
 }
 
 void require_layers(const Scene& scene) {

@@ -1,6 +1,7 @@
 #include <vector>
 
 #include "jam/polish.hpp"
+#include "scene/layers_of_scene.hpp"
 #include "soft/ground.hpp"
 #include "soft/relax.hpp"
 #include "soft/size_exchange.hpp"
@@ -24,6 +25,7 @@ constexpr StageTraits traits = {.in_bed = true,
 
 /// What comes first from a start, or from an engine, begins at the packing fraction that it has there.
 void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
+  if (relax.polish > 0 && traits.stands_in_bed(scene)) require_layers_that_stretch(scene);
   if ((scene.start.file || scene.engine) && scene.stages.front().as<Relax>() == &relax) return;
   if (!relax.phi0 && !traits.stands_in_bed(scene)) relax.phi0 = dense_start(scene.dimension());
 }

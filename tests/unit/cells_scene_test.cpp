@@ -199,6 +199,22 @@ TEST(Cells, AreCancelledWhole) {
   EXPECT_TRUE(packing.scene.cells);
 }
 
+// Their volumes are from 1e-5 to 4e4: rounding ended it, and the run with nothing to show.
+TEST(Cells, ThatRoundingKeepsFromTheirVolumesFallShort) {
+  const Packing packing = run(build(scene_of(
+      periodic,
+      "count = 30\ncells = { volume = { distribution = \"lognormal\", median = 1, sigma = 5 } }\n")));
+  EXPECT_EQ(packing.outcome, Outcome::hit_limit) << packing.reason;
+  EXPECT_NE(packing.reason.find("ask for a narrower distribution"), std::string::npos) << packing.reason;
+  EXPECT_EQ(packing.weights.size(), 30u);
+  ASSERT_TRUE(packing.cells);
+  EXPECT_GT(packing.cells->error, 1e-8);
+  EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
+  const testing::Folder folder;
+  write_packing(packing, folder / "out");
+  EXPECT_EQ(read_packing(folder / "out").weights, packing.weights);
+}
+
 TEST(Cells, TheExampleIsPacked) {
   Scene scene = read_scene(BERNAL_DATA "/cells/grains.toml");
   EXPECT_EQ(scene.target.count, 5000);

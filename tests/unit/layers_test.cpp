@@ -183,6 +183,19 @@ TEST(Layers, ThatCannotBeAreOneLineWithItsPlace) {
       "below \"max\"");
   refused(of("{ name = \"a\" }, { name = \"b\", thickness = { mean = 0.5, sd = 0.1 } }"), 4,
           "give the thickness a \"max\"");
+  const auto drawn = [&](const std::string& thickness) {
+    return of("{ name = \"a\" }, { name = \"b\", thickness = { " + thickness + " } }");
+  };
+  // Outside of what is drawn: the layers were all as thick as one end of it.
+  refused(drawn("distribution = \"normal\", mean = 0.1, sd = 0.001, min = 0.4"), 4, "must be below 0.106");
+  refused(drawn("mean = 0.1, sd = 0.001, min = 0.4, max = 0.5"), 4, "must be below 0.106");
+  refused(drawn("mean = 0.1, sd = 0.001, max = 0.05"), 4, "must be above 0.094");
+  EXPECT_NO_THROW(parse_scene(testing::with_spheres(drawn("mean = 0.1, sd = 0.001, min = 0.105")), ""));
+  refused(drawn("distribution = \"lognormal\", median = 0.1, sigma = 0.2"), 4,
+          "distribution = \"normal\" only");
+  refused(drawn("distribution = \"lognormal\", mean = 0.1, sd = 0.01"), 4, "must be \"normal\"");
+  refused(drawn("mean = 0.1, std = 0.01"), 4, "did you mean \"sd\"?");
+  refused(drawn("meen = 0.1, sd = 0.01"), 4, "did you mean \"mean\"?");
   refused(of("{ nam = \"a\" }"), 4, "did you mean \"name\"?");
   refused("radius = 1\nlayers = 3", 4, "one table { name = … }");
   refused(
@@ -198,6 +211,41 @@ TEST(Layers, ThatCannotBeAreOneLineWithItsPlace) {
                   "radius = 1\nlayers = [{ name = \"a\" }]\n",
                   "test.toml"),
       Error);
+}
+
+// They were found out only after the run, without a place.
+TEST(Layers, ThatEndAtOneRadiusAreRefusedWhereSizesChange) {
+  const auto refused = [](const std::string& spheres, const std::string& stage) -> std::string {
+    try {
+      parse_scene("container = { kind = \"box\", size = [6, 6, 6] }\n[spheres]\n" + spheres + "\n" + stage,
+                  "test.toml");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.location().line, 4) << error.what();
+      return error.what();
+    }
+    return "";
+  };
+  const std::string polish = "[[stage]]\ndo = \"relax\"\npolish = 1e-8\n", half = "radius = 0.5\n";
+  const std::string closed = "layers = [{ name = \"a\", radius = 0.4 }, { name = \"b\", thickness = 0.1 }]";
+  EXPECT_NE(refused(half + closed, polish).find("lets all sizes grow"), std::string::npos);
+  EXPECT_EQ(refused(half + closed, "[[stage]]\ndo = \"relax\"\n"), "");
+  EXPECT_EQ(refused(half + "layers = [{ name = \"a\" }, { name = \"b\", thickness = 0.1 }]", polish), "");
+  EXPECT_EQ(refused(half + "layers = [{ name = \"a\", share = 0.3 }, { name = \"b\", share = 0.7 }]", polish),
+            "");
+  EXPECT_NE(refused("radius = { distribution = \"classes\", values = [0.4, 0.5], shares = [1, 1],\n"
+                    "layers = [[{ name = \"a\" }], [{ name = \"b\", radius = 0.5 }]] }",
+                    polish)
+                .find("of class 2 end at one radius"),
+            std::string::npos);
+  EXPECT_NE(refused("radius = \"largest\"\nlayers = [{ name = \"a\", share = 0.3 }, { name = \"b\", share = "
+                    "0.6 }]\ncount = 5",
+                    "")
+                .find("leave one of them"),
+            std::string::npos);
+  EXPECT_EQ(refused("count = 5\nradius = \"largest\"\nlayers = [{ name = \"a\", share = 0.3 }, { name = "
+                    "\"b\", share = 0.7 }]",
+                    ""),
+            "");
 }
 
 TEST(Layers, ThickerThanASphereOfAPackingAreRefusedWithItsNumber) {

@@ -35,8 +35,8 @@ struct CellWeights {
 /// Preconditions: a Box of three dimensions, periodic or between walls; centres in it. The result is the same
 /// for any number of threads. Cost: for each step, 5 to 10 of them, what all cells cost, see
 /// `local_packing`, and some hundred products with a matrix of 15 N entries. Throws Error{bad_argument} where
-/// a precondition fails or a cell is empty at the start, Error{bad_packing} where `most_steps` or rounding
-/// end it at an error above a thousand times `tolerance`, and Cancelled as `local_packing` does.
+/// a precondition fails or a cell is empty at the start, and Cancelled as `local_packing` does. Where
+/// `most_steps` or rounding end it before, `error` is above `tolerance`: ask for it.
 /// Source: Kitagawa, Mérigot & Thibert, J. Eur. Math. Soc. 21 (2019) 2603; for grains, Bourne, Kok, Roper &
 /// Spanjer, Phil. Mag. 100 (2020) 2677.
 CellWeights weights_for_volumes(const Spheres<dynamic>& spheres, const Domain& domain,
