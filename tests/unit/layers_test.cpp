@@ -193,7 +193,7 @@ TEST(Layers, ThatCannotBeAreOneLineWithItsPlace) {
   EXPECT_NO_THROW(parse_scene(testing::with_spheres(drawn("mean = 0.1, sd = 0.001, min = 0.105")), ""));
   refused(drawn("distribution = \"lognormal\", median = 0.1, sigma = 0.2"), 4,
           "distribution = \"normal\" only");
-  refused(drawn("distribution = \"lognormal\", mean = 0.1, sd = 0.01"), 4, "must be \"normal\"");
+  refused(drawn("distribution = \"lognormal\", mean = 0.1, sd = 0.01"), 4, "did you mean \"normal\"?");
   refused(drawn("mean = 0.1, std = 0.01"), 4, "did you mean \"sd\"?");
   refused(drawn("meen = 0.1, sd = 0.01"), 4, "did you mean \"mean\"?");
   refused(of("{ nam = \"a\" }"), 4, "did you mean \"name\"?");
@@ -232,7 +232,7 @@ TEST(Layers, ThatEndAtOneRadiusAreRefusedWhereSizesChange) {
   EXPECT_EQ(refused(half + "layers = [{ name = \"a\" }, { name = \"b\", thickness = 0.1 }]", polish), "");
   EXPECT_EQ(refused(half + "layers = [{ name = \"a\", share = 0.3 }, { name = \"b\", share = 0.7 }]", polish),
             "");
-  EXPECT_NE(refused("radius = { distribution = \"classes\", values = [0.4, 0.5], shares = [1, 1],\n"
+  EXPECT_NE(refused("count = 9\nradius = { distribution = \"classes\", values = [0.4, 0.5], shares = [1, 1], "
                     "layers = [[{ name = \"a\" }], [{ name = \"b\", radius = 0.5 }]] }",
                     polish)
                 .find("of class 2 end at one radius"),
