@@ -32,7 +32,7 @@ constexpr const char* particles =
 /// Ten pebbles of 6 cm in a box, with what lies inside.
 std::string pebbles(const std::string& inside) {
   return fmt::format(
-      "unit = \"cm\"\nseed = 7\n[container]\nkind = \"box\"\nsize = [20, 20, 20]\n[spheres]\ncount = 10\n{}"
+      "unit = \"cm\"\nseed = 7\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\ncount = 10\n{}"
       "diameter = {{ distribution = \"classes\", values = [6.0], shares = [1], names = [\"pebble\"], layers "
       "= "
       "[[{{ name = \"fuel\", radius = 2.5 }}, {{ name = \"shell\" }}]] }}\n[[stage]]\ndo = \"insert\"\n",
@@ -114,7 +114,7 @@ TEST(Nest, OneSeedGivesOneNestForAnyNumberOfThreads) {
   EXPECT_EQ(levels[1].spheres, stand);
   EXPECT_EQ(spheres_of_all_levels(one), stand + 10);
   EXPECT_NEAR(levels[1].packing_fraction, 0.1, 0.001);
-  EXPECT_NEAR(levels[1].share, levels[1].packing_fraction * 10 * std::pow(2.5, 3) * 4 / 3 * M_PI / 8000,
+  EXPECT_NEAR(levels[1].share, levels[1].packing_fraction * 10 * std::pow(2.5, 3) * 4 / 3 * M_PI / 27000,
               1e-9);
 }
 
@@ -123,7 +123,7 @@ TEST(Nest, RotationsAreUniform) {
   scenes.folder.write("inner.toml",
                       "unit = \"mm\"\n[spheres]\ncount = 1\nradius = 5\n[[stage]]\ndo = \"insert\"\n");
   std::string outer = pebbles("{ scene = \"inner.toml\", templates = 1 }");
-  outer.replace(outer.find("[20, 20, 20]"), 12, "[200, 200, 200]");
+  outer.replace(outer.find("[30, 30, 30]"), 12, "[300, 300, 300]");
   outer.replace(outer.find("count = 10"), 10, "count = 2000");
   scenes.folder.write("outer.toml", outer);
   const Packing packing = scenes.packed();
@@ -273,7 +273,7 @@ TEST(Nest, ALevelOfSpheresWithoutAClassIsOne) {
   const Scenes scenes;
   scenes.folder.write(
       "outer.toml",
-      "unit = \"cm\"\n[container]\nkind = \"box\"\nsize = [20, 20, 20]\n[spheres]\ncount = 10\n"
+      "unit = \"cm\"\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\ncount = 10\n"
       "radius = 2.5\ninside = { scene = \"inner.toml\", templates = 2 }\n[[stage]]\ndo = "
       "\"insert\"\n");
   const std::vector<NestLevel> levels = levels_of(scenes.packed());
