@@ -20,8 +20,8 @@ struct ContainerInToml {
     std::vector<int> walls;
     for (int k = 0; k < 3; ++k)
       if (box.has_wall(k)) walls.push_back(k);
-    return fmt::format("{{ kind = \"periodic\", size = {}, walls = [{}] }}", list_of(Vector<3>(box.size)),
-                       fmt::join(walls, ", "));
+    return fmt::format("{{ kind = \"periodic\", size = {}{} }}", list_of(Vector<3>(box.size)),
+                       walls.empty() ? "" : fmt::format(", walls = [{}]", fmt::join(walls, ", ")));
   }
   std::string operator()(const Cylinder& cylinder) const {
     return fmt::format("{{ kind = \"cylinder\", radius = {}, height = {}, axis = {}, base = {}{} }}",

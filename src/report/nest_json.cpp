@@ -1,6 +1,9 @@
 #include "report/nest_json.hpp"
 
+#include <cmath>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/measure/measure.hpp"
@@ -67,6 +70,30 @@ Json insides_json(const Packing& around, const std::vector<InsideFiles>& files) 
   return all;
 }
 
+/// The place of the first difference, from `at` on; nothing where there is none.
+std::string difference(const Json& said, const Json& found, const std::string& at) {
+  constexpr double rounding = 1e-9;
+  if (found.is_object() && said.is_object()) {
+    for (const auto& [key, value] : found.items()) {
+      const std::string place = (at.empty() ? "" : at + ".") + key;
+      if (!said.contains(key)) return place;
+      if (std::string deeper = difference(said.at(key), value, place); !deeper.empty()) return deeper;
+    }
+    return {};
+  }
+  if (found.is_array() && said.is_array() && found.size() == said.size()) {
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (std::string deeper = difference(said[i], found[i], fmt::format("{}[{}]", at, i)); !deeper.empty())
+        return deeper;
+    return {};
+  }
+  if (found.is_number_float() && said.is_number()) {
+    const double a = said.get<double>(), b = found.get<double>();
+    return std::abs(a - b) <= rounding * std::abs(b) ? "" : at;
+  }
+  return said == found ? "" : at;
+}
+
 std::string text_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -90,12 +117,25 @@ Json levels_json(const Packing& packing) {
   return all;
 }
 
+namespace {
+
+Json nest_json(const Packing& packing, const std::vector<InsideFiles>& files) {
+  return {{"unit", name_of(packing.scene.unit)},
+          {"spheres", packing.spheres.size()},
+          {"spheres_of_all_levels", spheres_of_all_levels(packing)},
+          {"levels", levels_json(packing)},
+          {"inside", insides_json(packing, files)}};
+}
+
+}  // namespace
+
 std::string nest_as_json(const Packing& packing, const std::vector<InsideFiles>& files) {
-  return text_of({{"unit", name_of(packing.scene.unit)},
-                  {"spheres", packing.spheres.size()},
-                  {"spheres_of_all_levels", spheres_of_all_levels(packing)},
-                  {"levels", levels_json(packing)},
-                  {"inside", insides_json(packing, files)}});
+  return text_of(nest_json(packing, files));
+}
+
+std::string nest_differs(const std::string& json, const Packing& packing,
+                         const std::vector<InsideFiles>& files) {
+  return difference(Json::parse(json, nullptr, false), nest_json(packing, files), "");
 }
 
 std::vector<InsideFiles> files_in_nest(const std::string& text, const std::filesystem::path& file) {

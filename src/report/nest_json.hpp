@@ -23,4 +23,8 @@ std::string nest_as_json(const Packing&, const std::vector<InsideFiles>& files);
 /// The files that such a text names. Throws Error{bad_packing} with the name of the file for what is none.
 std::vector<InsideFiles> files_in_nest(const std::string& json, const std::filesystem::path& file);
 
+/// Where nest.json says otherwise than the files that it names, of which `packing` was read, as
+/// "inside[0].packings[1].hash"; nothing where it does not. Numbers with a point may differ by rounding.
+std::string nest_differs(const std::string& json, const Packing&, const std::vector<InsideFiles>& files);
+
 }  // namespace bernal

@@ -26,6 +26,17 @@ bool is_unit(const std::array<double, 4>& q) {
   return std::abs(squared - 1) <= unit_to;
 }
 
+/// Where some of the spheres that could hold a packing hold none, of how many that is.
+std::string words_of(const Certificate::Level& level, std::size_t of_class) {
+  const std::string filled = level.filled == of_class
+                                 ? grouped(level.filled)
+                                 : fmt::format("{} of {}", grouped(level.filled), grouped(of_class));
+  return fmt::format("inside {}: {} in {} {}, each in its innermost layer, {} {}", level.name,
+                     level.packings == 1 ? "one packing" : grouped(level.packings) + " packings", filled,
+                     of_class == 1 ? "sphere" : "spheres", grouped(level.spheres),
+                     level.spheres == 1 ? "sphere in all" : "spheres in all");
+}
+
 /// The proof for what lies inside the spheres of one class.
 class Proof {
  public:
@@ -35,6 +46,9 @@ class Proof {
     level_.name = inside.of_class < classes.size() ? classes[inside.of_class].name : "spheres";
     level_.packings = inside.templates.size();
     uses_.resize(inside.templates.size(), 0);
+    of_class_ = packing.classes.empty()
+                    ? packing.spheres.size()
+                    : static_cast<std::size_t>(std::ranges::count(packing.classes, inside.of_class));
   }
 
   /// Of each filled sphere.
@@ -76,6 +90,12 @@ class Proof {
     if (level_.misplaced > 1)
       return fmt::format("{}, and {} more spheres", sphere_fault_, grouped(level_.misplaced - 1));
     return sphere_fault_;
+  }
+  /// "inside pebble: 10 packings in 29,400 spheres, …", and what lies inside of these.
+  std::string in_words() const {
+    std::string words = "; " + words_of(level_, of_class_);
+    for (const Certificate::Level& level : deeper_) words += "; " + words_of(level, level.filled);
+    return words;
   }
   void take_into(Certificate& c) {
     c.levels.push_back(level_);
@@ -132,16 +152,9 @@ class Proof {
   Certificate::Level level_;
   std::vector<Certificate::Level> deeper_;
   std::vector<std::uint64_t> uses_;  // of each packing
+  std::size_t of_class_ = 0;         // spheres that could be filled
   std::string packing_fault_, sphere_fault_;
 };
-
-/// "each of 29,400 spheres (pebble) holds one of 10 packings, turned, in a ball in its innermost layer".
-std::string in_words(const Certificate::Level& level) {
-  return fmt::format("inside {}: {} in {} {}, each in its innermost layer, {} {}", level.name,
-                     level.packings == 1 ? "one packing" : grouped(level.packings) + " packings",
-                     grouped(level.filled), level.filled == 1 ? "sphere" : "spheres", grouped(level.spheres),
-                     level.spheres == 1 ? "sphere in all" : "spheres in all");
-}
 
 }  // namespace
 
@@ -149,13 +162,14 @@ Certificate with_levels(Certificate c, const Packing& packing,
                         const std::vector<std::vector<Certificate>>& of_insides) {
   if (packing.inside.empty()) return c;
   const SphereLayers layers = layers_of(packing);
-  std::string faults;
+  std::string faults, words;
   for (std::size_t k = 0; k < packing.inside.size(); ++k) {
     Proof proof(packing, packing.inside[k], layers);
     proof.look_at_spheres();
     proof.look_at_packings(of_insides[k]);
     if (const std::string fault = proof.fault(); !fault.empty())
       faults += (faults.empty() ? "" : "; ") + fault;
+    words += proof.in_words();
     proof.take_into(c);
   }
   c.spheres_of_all_levels = c.spheres;
@@ -165,12 +179,11 @@ Certificate with_levels(Certificate c, const Packing& packing,
                               faults.ends_with('.') ? "" : ".");
     c.certified = false;
   } else if (c.certified) {
-    c.statement += " So are all levels";
-    for (const Certificate::Level& level : c.levels) c.statement += "; " + in_words(level);
     c.statement += fmt::format(
-        ". A rotation changes no distance: what is said of the spheres holds for all {}, which stand for "
+        " So are all levels{}. A rotation changes no distance: what is said of the spheres holds for all {}, "
+        "which stand for "
         "themselves.",
-        grouped(c.spheres_of_all_levels));
+        words, grouped(c.spheres_of_all_levels));
   }
   return c;
 }

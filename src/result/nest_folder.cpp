@@ -116,7 +116,8 @@ void read_nest(Packing& packing, const fs::path& folder) {
         "is missing: it says which packings lie inside of the spheres; take a folder that bernal pack "
         "wrote",
         {file.string()});
-  const std::vector<InsideFiles> all = files_in_nest(bytes_of_file(file), file);
+  const std::string text = bytes_of_file(file);
+  const std::vector<InsideFiles> all = files_in_nest(text, file);
   if (all.size() != packing.scene.inside.size())
     throw Error(ErrorCode::bad_packing,
                 fmt::format("has {} kinds of packings inside of spheres, and the scene has {}", all.size(),
@@ -132,6 +133,17 @@ void read_nest(Packing& packing, const fs::path& folder) {
           std::make_shared<const Packing>(read_packing(in_folder(folder, name, file))));
     read_table(in_folder(folder, all[k].table, file), inside);
   }
+  const bool goes_together = std::ranges::all_of(packing.inside, [](const PackingsInside& inside) {
+    return std::ranges::all_of(inside.which, [&](std::uint32_t t) { return t < inside.templates.size(); });
+  });
+  if (!goes_together) return;  // the certificate says which sphere holds a packing that is not there
+  if (const std::string place = nest_differs(text, packing, all); !place.empty())
+    throw Error(
+        ErrorCode::bad_packing,
+        fmt::format("says otherwise than the files that it names, at {}: one of them has changed since "
+                    "it was written; pack {} again",
+                    place, (folder / "scene.toml").string()),
+        {file.string()});
 }
 
 }  // namespace bernal

@@ -15,7 +15,7 @@ double volume_in_metres(double volume, Unit unit) { return volume * std::pow(met
 
 double volume_of_spheres(const Packing& packing) { return packing.packing_fraction() * packing.volume; }
 
-/// Levels as they are found, those of one name taken together.
+/// Levels as they are found, those of one depth and name taken together.
 class Levels {
  public:
   explicit Levels(const Packing& whole) : whole_(volume_in_metres(whole.volume, whole.scene.unit)) {
@@ -47,7 +47,8 @@ class Levels {
 
   void add(const std::string& name, int depth, const PackingsInside& inside,
            const std::vector<std::uint64_t>& uses) {
-    auto found = std::ranges::find(levels_, name, &NestLevel::name);
+    auto found = std::ranges::find_if(  // spheres without a class are called what the outermost are
+        levels_, [&](const NestLevel& other) { return other.name == name && other.depth == depth; });
     if (found == levels_.end()) found = levels_.insert(found, NestLevel{.name = name, .depth = depth});
     NestLevel& level = *found;
     double& balls = balls_[name];

@@ -168,7 +168,8 @@ double above_floor(const Vector<3>& p, const Cylinder& c) {
   const double along = q.dot(axis);
   return std::min({along, c.height - along, c.radius - (q - along * axis).norm()});
 }
-double in_box(const Vector<3>&) { return 1; }
+/// Of the box of `exports::periodic`.
+double in_box(const Vector<3>& p) { return std::min(p.minCoeff(), (Vector<3>(3, 4, 5.3) - p).minCoeff()); }
 
 /// Larger ones than those of `packing_in`.
 Packing grown(Packing packing) {

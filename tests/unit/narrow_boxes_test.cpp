@@ -73,12 +73,13 @@ TEST(NarrowBoxesOfGivenSize, OneDiameterWideAreMetExactly) {
     std::string size;
     double packing_fraction;
   };
-  for (const Case& c : {Case{"[1.0, 9.0, 9.0]", 0.5}, {"[1.0, 1.0, 40.0]", 0.45}, {"[1.0, 40.0]\ndimension = 2", 0.6}})
+  for (const Case& c :
+       {Case{"[1.0, 9.0, 9.0]", 0.5}, {"[1.0, 1.0, 40.0]", 0.45}, {"[1.0, 40.0]\ndimension = 2", 0.6}})
     for (int seed = 1; seed <= 2; ++seed) {
-      const Packing packing = run(testing::plan_of(fmt::format(
-          "seed = {}\n[container]\nkind = \"periodic\"\nsize = {}\n[spheres]\ndiameter = 1.0\n"
-          "packing_fraction = {}\n[[stage]]\ndo = \"relax\"\n",
-          seed, c.size, c.packing_fraction)));
+      const Packing packing = run(testing::plan_of(
+          fmt::format("seed = {}\n[container]\nkind = \"periodic\"\nsize = {}\n[spheres]\ndiameter = 1.0\n"
+                      "packing_fraction = {}\n[[stage]]\ndo = \"relax\"\n",
+                      seed, c.size, c.packing_fraction)));
       EXPECT_EQ(packing.outcome, Outcome::converged) << c.size << " " << packing.reason;
       testing::starts::expect_certified(packing);
     }

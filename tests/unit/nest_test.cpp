@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -17,6 +20,7 @@
 #include "bernal/scene/nest.hpp"
 #include "bernal/scene/packing_bytes.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "files/bytes_of_file.hpp"
 #include "support/folder.hpp"
 
 namespace bernal {
@@ -28,7 +32,7 @@ constexpr const char* particles =
 /// Ten pebbles of 6 cm in a box, with what lies inside.
 std::string pebbles(const std::string& inside) {
   return fmt::format(
-      "unit = \"cm\"\nseed = 7\n[container]\nkind = \"box\"\nsize = [20, 20, 20]\n[spheres]\ncount = 10\n{}"
+      "unit = \"cm\"\nseed = 7\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\ncount = 10\n{}"
       "diameter = {{ distribution = \"classes\", values = [6.0], shares = [1], names = [\"pebble\"], layers "
       "= "
       "[[{{ name = \"fuel\", radius = 2.5 }}, {{ name = \"shell\" }}]] }}\n[[stage]]\ndo = \"insert\"\n",
@@ -110,7 +114,7 @@ TEST(Nest, OneSeedGivesOneNestForAnyNumberOfThreads) {
   EXPECT_EQ(levels[1].spheres, stand);
   EXPECT_EQ(spheres_of_all_levels(one), stand + 10);
   EXPECT_NEAR(levels[1].packing_fraction, 0.1, 0.001);
-  EXPECT_NEAR(levels[1].share, levels[1].packing_fraction * 10 * std::pow(2.5, 3) * 4 / 3 * M_PI / 8000,
+  EXPECT_NEAR(levels[1].share, levels[1].packing_fraction * 10 * std::pow(2.5, 3) * 4 / 3 * M_PI / 27000,
               1e-9);
 }
 
@@ -119,7 +123,7 @@ TEST(Nest, RotationsAreUniform) {
   scenes.folder.write("inner.toml",
                       "unit = \"mm\"\n[spheres]\ncount = 1\nradius = 5\n[[stage]]\ndo = \"insert\"\n");
   std::string outer = pebbles("{ scene = \"inner.toml\", templates = 1 }");
-  outer.replace(outer.find("[20, 20, 20]"), 12, "[200, 200, 200]");
+  outer.replace(outer.find("[30, 30, 30]"), 12, "[300, 300, 300]");
   outer.replace(outer.find("count = 10"), 10, "count = 2000");
   scenes.folder.write("outer.toml", outer);
   const Packing packing = scenes.packed();
@@ -222,6 +226,62 @@ TEST(Nest, FilesHoldAllOfIt) {
   write_packing(plain, out / "nest");
   EXPECT_FALSE(std::filesystem::exists(out / "nest/inside"));
   EXPECT_FALSE(std::filesystem::exists(out / "nest/nest.json"));
+}
+
+TEST(Nest, FilesThatDoNotGoTogetherAreRefused) {
+  const Packing packing = Scenes().packed();
+  const auto refusal = [&](const std::function<void(const std::filesystem::path&)>& spoil) {
+    const testing::Folder out;
+    write_packing(packing, out / "nest");
+    spoil(out / "nest");
+    try {
+      read_packing(out / "nest");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto rewrite = [](const std::filesystem::path& file, const auto& change) {
+    std::string text = bytes_of_file(file);
+    change(text);
+    std::ofstream(file, std::ios::binary) << text;
+  };
+  EXPECT_EQ(refusal([](const auto&) {}), "");
+  EXPECT_NE(refusal([&](const auto& nest) {
+              rewrite(nest / "inside/pebble/rotations.csv", [](std::string& text) {
+                text.erase(text.rfind('\n', text.size() - 2) + 1);  // the last of its lines
+              });
+            }).find("nest.json"),
+            std::string::npos);
+  EXPECT_NE(refusal([](const auto& nest) {
+              const auto inside = nest / "inside/pebble";
+              std::filesystem::rename(inside / "template-001", inside / "other");
+              std::filesystem::rename(inside / "template-002", inside / "template-001");
+              std::filesystem::rename(inside / "other", inside / "template-002");
+            }).find("inside[0].packings[0]"),
+            std::string::npos);
+  EXPECT_NE(refusal([&](const auto& nest) {
+              rewrite(nest / "nest.json", [](std::string& text) {
+                const std::string all = "\"spheres_of_all_levels\": ";
+                text.insert(text.find(all) + all.size(), "1");
+              });
+            }).find("spheres_of_all_levels"),
+            std::string::npos);
+}
+
+TEST(Nest, ALevelOfSpheresWithoutAClassIsOne) {
+  const Scenes scenes;
+  scenes.folder.write(
+      "outer.toml",
+      "unit = \"cm\"\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\ncount = 10\n"
+      "radius = 2.5\ninside = { scene = \"inner.toml\", templates = 2 }\n[[stage]]\ndo = "
+      "\"insert\"\n");
+  const std::vector<NestLevel> levels = levels_of(scenes.packed());
+  ASSERT_EQ(levels.size(), 2U);
+  EXPECT_EQ(levels[0].spheres, 10U);
+  EXPECT_EQ(levels[1].depth, 1);
+  EXPECT_EQ(levels[1].filled, 10U);
+  EXPECT_NEAR(levels[1].packing_fraction, 0.1, 0.01);
 }
 
 TEST(Nest, EverySphereHasItsOwnWithoutTemplates) {

@@ -201,6 +201,7 @@ TEST(Reference, AsDataSaysTheSame) {
                                                         {"stage", stage_tables().size()},
                                                         {"engine", schema::engine_entries().size()},
                                                         {"output", export_formats().size()},
+                                                        {"table", 4},  // cells, inside, layers, thickness
                                                         {"zone", 1}}));
 }
 
