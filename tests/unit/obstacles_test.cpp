@@ -100,8 +100,9 @@ TEST(Obstacles, ARodAboutTheAxisFromEndToEndLeavesASolidOfRevolution) {
   const auto container = make_container(around, WallArithmetic::exact, 1e-15);
   EXPECT_TRUE(container->contains({2, 0, 10}, 1));
   EXPECT_FALSE(container->contains({2, 0, 10}, std::nextafter(1.0, 2.0)));
-  for (const char* other : {"radius = 1, height = 30", "radius = 1, height = 80, base = [1, 0, -10]",
-                            "radius = 1, height = 80, base = [0, 0, -10], axis = [0, 1e-3, 1]"})
+  for (const char* other :
+       {"radius = 1, height = 30, base = [0, 0, 5]", "radius = 1, height = 80, base = [1, 0, -10]",
+        "radius = 1, height = 80, base = [0, 0, -10], axis = [0, 1e-3, 1]"})
     EXPECT_TRUE(std::holds_alternative<Mesh>(
         domain_with(cylinder + "obstacles = [{ kind = \"cylinder\", " + other + " }]")))
         << other;
