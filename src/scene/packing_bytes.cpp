@@ -74,6 +74,7 @@ static void archive(Archive& a, Scene& scene) {
   }
   std::vector<std::string> names;
   for (const std::filesystem::path* const name : files_named_in(scene)) names.push_back(name->string());
+  for (const Inside& inside : scene.inside) names.push_back(inside.scene.string());
   std::map<std::filesystem::path, std::shared_ptr<const PolygonSurface>> surfaces;
   for (const MeshFile* mesh : scene.meshes()) surfaces.insert(mesh->surfaces.begin(), mesh->surfaces.end());
   std::uint64_t count = surfaces.size();

@@ -82,7 +82,24 @@ inline Domain shifted(Domain shape, const Vector<3>& by) {
   return shape;
 }
 
+inline void scale(std::vector<Layer>& layers, double factor) {
+  for (Layer& layer : layers) {
+    if (layer.radius) *layer.radius *= factor;
+    if (!layer.thickness) continue;
+    layer.thickness->mean *= factor;
+    layer.thickness->sd *= factor;
+    if (layer.thickness->min) *layer.thickness->min *= factor;
+    if (layer.thickness->max) *layer.thickness->max *= factor;
+  }
+}
+
+/// Without what lies inside of its spheres, whose scenes have lengths of their own.
 inline Plan scaled(Plan plan, double factor) {
+  scale(plan.scene.layers, factor);
+  if (auto* classes = std::get_if<Classes>(&plan.scene.sizes))
+    for (std::vector<Layer>& layers : classes->layers) scale(layers, factor);
+  plan.insides.clear();
+  plan.scene.inside.clear();
   plan.domain = scaled(std::move(plan.domain), factor);
   plan.container = nullptr;
   plan.radii = std::make_unique<ScaledSizes>(std::move(plan.radii), factor);
