@@ -182,7 +182,9 @@ TEST_P(EffectsOf, TheSceneAreAllThatIsMadeThatAllocatesAndThatRuns) {
   }
   for (const Counts* counts : std::initializer_list<const Counts*>{&account.made, &account.allocated, &calls})
     for (const auto& [effect, count] : *counts)
-      EXPECT_TRUE(planned.contains(effect)) << effect << " is not planned, " << count << " times";
+      // The balls that packings lie in end where layers do.
+      EXPECT_TRUE(planned.contains(effect == "layers" ? "inside" : effect))
+          << effect << " is not planned, " << count << " times";
   for (const PlanItem& item : account.plan.items)
     if (!item.if_needed && item.name != "fly") {  // which says how a box is filled
       EXPECT_EQ(calls.count(item.name), 1u) << item.name << " is planned and does not run";
