@@ -86,7 +86,7 @@ void write_flat(const Exported& file, TextFile& out) {
 
 /// How far turning and moving may be off: see `turned`, and half a unit in the last place of each sum.
 std::string rounding_in_words(const Exported& file) {
-  if (file.packing.inside.empty()) return "nothing lies inside of its spheres";
+  if (file.packing.inside.empty()) return "radii; nothing lies inside of its spheres";
   double largest = 0, ball = 0;
   for (const auto& column : file.spheres.x)
     for (const double x : column) largest = std::max(largest, std::abs(x));
@@ -100,9 +100,8 @@ std::string rounding_in_words(const Exported& file) {
   }
   const double off = depth * (4e-15 * ball + 0x1p-53 * (largest + ball));
   return fmt::format(
-      "{} spheres that hold no others, with the number of the outermost that each lies in; turning and "
-      "moving "
-      "them rounds each coordinate, by less than {:.1g} {}, so that they may overlap by as much",
+      "radii; {} spheres that hold no others, with the number of the outermost that each lies in; turning "
+      "and moving them rounds each coordinate, by less than {:.1g} {}, so that they may overlap by as much",
       grouped(spheres), off, name_of(file.unit()));
 }
 
