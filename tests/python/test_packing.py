@@ -89,7 +89,7 @@ class Layers(InFolder):
         self.assertEqual((packing.weights.shape, packing.weights.dtype), ((100,), np.float64))
         self.assertFalse(packing.weights.flags.writeable)
         self.assertAlmostEqual(packing.weights.mean(), (packing.radii**2).mean())
-        self.assertEqual(packing.scene.cells["diameter"]["sigma"], 0.3)
+        self.assertEqual(packing.scene.cells["diameter"].sigma, 0.3)
         self.assertTrue((pickle.loads(pickle.dumps(packing)).weights == packing.weights).all())
         packing.write(self.folder / "out")
         self.assertTrue((np.load(self.folder / "out" / "weights.npy") == packing.weights).all())

@@ -88,7 +88,7 @@ class Classes(InFolder):
         self.assertEqual(small(count=np.int32(5)).count, 5)
         self.assertEqual(small(count=1e3).count, 1000)
         self.refuses(bernal.InputError, "must be a whole number", lambda: small(count=2.5))
-        self.refuses(bernal.InputError, "numbers, text, flags", lambda: bernal.Relax(alpha={}))
+        self.refuses(bernal.InputError, "numbers, text, flags", lambda: bernal.Relax(alpha=object()))
 
     def test_an_array_of_diameters_is_packed_each_exactly_once(self):
         diameters = np.random.default_rng(3).lognormal(0, 0.3, 1200)

@@ -279,8 +279,9 @@ def _parts_of(said: dict[str, Any], whole: dict[str, Any]) -> dict[str, Any]:
             parts[name] = _sizes(whole["spheres"][key] if _names_a_file(sizes) else sizes)
     own = {**said, **said["spheres"], **said.get("accuracy", {})}
     parts.update({name: value for name, value in own.items() if name in _KEYS})
-    if "start" in parts:
-        parts["start"] = whole["spheres"]["start"]
+    for name in ("start", "inside"):  # which name files
+        if name in parts:
+            parts[name] = whole["spheres"][name]
     return parts
 
 
@@ -297,7 +298,10 @@ def _chosen(selector: str, table: dict[str, Any]) -> Said:
 
 def _sizes(value: Any) -> Any:
     if isinstance(value, dict):
-        return _chosen("kind" if "kind" in value else "distribution", value)
+        for selector in ("kind", "distribution"):
+            if selector in value:
+                return _chosen(selector, value)
+        return {name: _sizes(each) for name, each in value.items()}  # a layer, which is a table and no class
     if isinstance(value, list):
         return [_sizes(each) for each in value]
     return value
