@@ -77,7 +77,7 @@ class Scenes(unittest.TestCase):
                     continue
                 seen |= {name} if table.group == "output" else set()
                 for value in bad_values(key, kinds):
-                    lines = table.needed(table.index_with(name))
+                    lines = table.needed(table.index_with(name), name)
                     lines[name] = value
                     cases.append((table, name, table.scene(lines)))
         self.assertGreater(len(cases), 250)
@@ -95,7 +95,7 @@ class Scenes(unittest.TestCase):
                     continue
                 seen |= {name} if table.group == "output" else set()
                 for value in some(good_values(key), kinds, key["type"]):
-                    lines = table.needed(table.index_with(name))
+                    lines = table.needed(table.index_with(name), name)
                     lines[name] = value
                     cases.append((name, table.scene(lines)))
         self.assertGreater(len(cases), 150)

@@ -111,18 +111,15 @@ class Table:
     keys: dict
     choices: list
 
-    def sets(self, index):
-        """The keys that are left out of the index-th set of each choice."""
-        out = set()
+    def needed(self, index=0, asked=None):
+        """A good value of each key that must be there, with the index-th set of every choice, or of those with the key
+        that is asked for and the first of the others."""
+        inside, out = set(), set()
         for choice in self.choices:
-            kept = choice[index % len(choice)]
+            is_meant = asked is None or any(asked in one for one in choice)
+            kept = choice[index % len(choice) if is_meant else 0]
+            inside |= set(kept)
             out |= {key for one in choice for key in one if key not in kept}
-        return out
-
-    def needed(self, index=0):
-        """A good value of each key that must be there, with the index-th set of every choice."""
-        out = self.sets(index)
-        inside = {key for choice in self.choices for key in choice[index % len(choice)]}
         lines = {}
         for name, key in self.keys.items():
             if name in out or not (key["required"] or (name in inside and key["default"] is None)):
