@@ -179,7 +179,15 @@ Packing grown(Packing packing) {
 
 Packing layered_cylinder(const Vector<3>& axis) {
   const Cylinder c{.base = {1, 2, -1}, .axis = axis, .radius = 2, .height = 5};
-  return with_layers(grown(packing_in(c, "kind = \"cylinder\"\nradius = 2\nheight = 5")), three_layers);
+  Packing packing = grown(packing_in(c, "kind = \"cylinder\"\nradius = 2\nheight = 5"));
+  Spheres<dynamic> within(3);  // growing took the others through the walls
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+    if (above_floor(packing.spheres.center(i), c) < packing.spheres.r[i]) continue;
+    for (std::size_t k = 0; k < 3; ++k) within.x[k].push_back(packing.spheres.x[k][i]);
+    within.r.push_back(packing.spheres.r[i]);
+  }
+  packing.spheres = within;
+  return with_layers(std::move(packing), three_layers);
 }
 
 TEST(Levels, LayersInACylinderStandInEveryFormat) {
@@ -192,9 +200,7 @@ TEST(Levels, LayersInACylinderStandInEveryFormat) {
   expect_traced(packing, "mcnp", "core.inp", clear);
 }
 
-// Disabled: in one of these files 807 of 20,000 points lie in no cell or in several; whether the packing of
-// the test, the writer or the tracer is wrong is not known.
-TEST(Levels, DISABLED_ObliqueAxesAndConesAreWalls) {
+TEST(Levels, ObliqueAxesAndConesAreWalls) {
   const Packing oblique = layered_cylinder({1, 2, 3});
   for (const auto& [format, name] :
        {std::pair{"openmc", "m"}, {"serpent", "m.inp"}, {"scone", "m"}, {"mcnp", "m"}})
