@@ -19,6 +19,7 @@
 #include "bernal/report/json.hpp"
 #include "bernal/report/zones_in_place.hpp"
 #include "bernal/result/certify_levels.hpp"
+#include "bernal/result/layers_table.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -147,19 +148,31 @@ bool is_streamed(const VerifyCall& call, const Scene& scene) {
   return is_folder(call.target) && is_in_slabs(scene) && spheres_of_result(call.target).extension() == ".npy";
 }
 
+/// What the tables of layers say that stand beside a result's own scene.
+std::optional<LayersTable> layers_table_of(const VerifyCall& call, const Packing& packing) {
+  if (!is_folder(call.target) || !call.scene.empty()) return {};
+  return layers_table_of(packing, call.target);
+}
+
 int verify(const VerifyCall& call) {
   const Scene scene = scene_of(call);
   say_if_unpublished(call.target);
   const bool streamed = is_streamed(call, scene);
   const bool by_levels = is_folder(call.target) && !scene.inside.empty();
-  const Packing nest = by_levels ? read_packing(call.target) : Packing();
-  std::vector<std::uint32_t> classes = nest.classes;
-  const Spheres<dynamic> spheres = streamed    ? Spheres<dynamic>()
-                                   : by_levels ? nest.spheres
-                                   : is_folder(call.target)  // before another result replaces both
-                                       ? read_spheres_of(scene, call.target, &classes)
-                                       : read_columns_of(scene, call.target);
-  const Domain domain = packed_domain_of(scene);
+  Packing packing;
+  if (by_levels) {
+    packing = read_packing(call.target);
+  } else {
+    packing.scene = scene;
+    packing.seed = scene.seed;
+    if (!streamed)
+      packing.spheres = is_folder(call.target)  // before another result replaces both
+                            ? read_spheres_of(scene, call.target, &packing.classes)
+                            : read_columns_of(scene, call.target);
+    packing.domain = packed_domain_of(scene);
+  }
+  const Spheres<dynamic>& spheres = packing.spheres;
+  const Domain& domain = packing.domain;
   speak_of(scene.dimension());
 
   ProgressBar bar(call.json, true);
@@ -170,11 +183,13 @@ int verify(const VerifyCall& call) {
                                .threads = call.threads,
                                .monitor = bar.monitor()};
   Certificate certificate = streamed    ? certify_in_slabs(scene, spheres_of_result(call.target), options)
-                            : by_levels ? certify_levels(nest, options)
+                            : by_levels ? certify_levels(packing, options)
                                         : certify(spheres, domain, options);
   certificate.statement += certified_walls(scene);
-  const auto zones = zones_in_place(scene, domain, spheres, classes, {.threads = call.threads});
+  const auto zones = zones_in_place(scene, domain, spheres, packing.classes, {.threads = call.threads});
   if (zones) add_to(certificate, *zones);
+  if (const auto table = streamed ? std::nullopt : layers_table_of(call, packing))
+    add_to(certificate, *table);
   std::optional<Rest> rest;
   if (call.settled) rest = rest_of(call, scene, spheres, domain, streamed);
   bar.clear();
@@ -223,7 +238,7 @@ Command verify_command() {
                      "of others, with three decimals: which spheres do not rest"},
                     {"bernal verify bed.csv --scene scene.toml --list", "other spheres, and what is wrong"}},
        .exit_codes = {{"0", "certified"},
-                      {"1", "not certified, in another zone, or not at rest"},
+                      {"1", "not certified, in another zone, not at rest, or layers.csv says otherwise"},
                       {"2", "bad input"}}},
       [call] { return verify(*call); }};
 }

@@ -16,6 +16,7 @@
 #include "bernal/predict/design.hpp"
 #include "bernal/predict/predict.hpp"
 #include "bernal/result/certify_levels.hpp"
+#include "bernal/result/layers_table.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"

@@ -16,7 +16,7 @@ const std::vector<Layer>& layers_of_sphere(const SphereLayers& layers, const Pac
 }  // namespace
 
 void write_layers_csv(OutputFile& file, const SphereLayers& layers, const Packing& packing) {
-  file.append(fmt::format("# unit: {}\nsphere,layer,material,inner,outer\n", name_of(packing.scene.unit)));
+  file.append(fmt::format("# unit: {}\n{}\n", name_of(packing.scene.unit), header_of_layers));
   constexpr std::size_t block = 1 << 16;
   std::string text;
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {

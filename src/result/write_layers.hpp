@@ -11,6 +11,8 @@ namespace bernal {
 /// The name of the table of layers in a result that has any, with its spheres as text.
 inline constexpr std::string_view layers_as_text = "layers.csv";
 
+inline constexpr std::string_view header_of_layers = "sphere,layer,material,inner,outer";
+
 /// A line for each layer of each sphere, from the centre out: `sphere` (its line in spheres.csv, counted from
 /// 0), `layer`, `material`, and where it begins and ends, `inner` and `outer`, measured from the centre, in
 /// the scene's unit: the shortest text that reads back to the same double.

@@ -122,6 +122,65 @@ TEST_F(Verify, BadFilesAreNotAVerdict) {
   expect_refused_in_one_line(with(touching), {"scene.toml"});
 }
 
+// ---- Layers
+
+TEST(VerifyLayers, TheirTableIsHeldAgainstTheSceneAndTheSpheres) {
+  const Folder folder;
+  const std::string scene =
+      folder
+          .write(
+              "coated.toml",
+              "seed = 5\n" + std::string(small_scene) +
+                  R"(layers = [{ name = "core", material = "glass" }, { name = "coat", thickness = { distribution = "normal", mean = 0.05, sd = 0.01, min = 0.01, max = 0.09 } }])"
+                  "\n")
+          .string();
+  const std::string out = (folder / "out").string(), table = out + "/layers.csv";
+  ASSERT_EQ(bernal({"pack", scene, "-o", out, "--quiet"}).status, 0);
+  const Ended kept = bernal({"verify", out});
+  EXPECT_EQ(kept.status, 0) << kept.out << kept.err;
+  EXPECT_NE(kept.out.find("layers.csv has the 600 layers"), std::string::npos) << kept.out;
+
+  const auto expect_fault = [&](const std::string& words) {
+    const Ended ended = bernal({"verify", out});
+    EXPECT_EQ(ended.status, 1) << words << ended.out << ended.err;
+    EXPECT_NE(ended.out.find("certified  NO"), std::string::npos) << ended.out;
+    EXPECT_NE(ended.out.find("Not certified: " + out + "/layers.csv" + words), std::string::npos)
+        << words << ended.out;
+    EXPECT_EQ(nlohmann::json::parse(bernal({"verify", out, "--json"}).out)["certified"], false);
+  };
+  const auto with_table = [&](const std::string& text) { folder.write("out/layers.csv", text); };
+  const std::string written = text_of(table);
+  std::string changed = written;
+  changed.replace(changed.find("glass"), 5, "steel");
+  with_table(changed);
+  expect_fault(":3: says otherwise");
+  changed = written;
+  const std::size_t digit = changed.find("\n0,coat,coat,0.4") + 16;
+  changed[digit] = changed[digit] == '5' ? '6' : '5';
+  with_table(changed);
+  expect_fault(":4: says otherwise than the scene and the spheres, by which \"coat\" of sphere 0");
+  with_table(written.substr(0, written.rfind("\n299,core") + 1));
+  expect_fault(":600: ends here, where \"core\" of sphere 299");
+  with_table(written + "300,core,glass,0,0.4\n");
+  expect_fault(":603: has more layers");
+  with_table(written.substr(0, written.size() / 2));
+  expect_fault(":");
+  with_table("");
+  expect_fault(": ");
+  with_table(written);
+  EXPECT_EQ(bernal({"verify", out}).status, 0);
+
+  // Of another seed the same spheres have other layers; those of another scene have none.
+  std::string other = text_of(out + "/scene.toml");
+  ASSERT_NE(other.find("seed = 5\n"), std::string::npos) << other;
+  other.replace(other.find("seed = 5\n"), 9, "seed = 6\n");
+  folder.write("out/scene.toml", other);
+  expect_fault(":3: says otherwise");
+  folder.write("out/scene.toml", small_scene);
+  expect_fault(": the scene names no layers");
+  EXPECT_EQ(bernal({"verify", out + "/spheres.csv", "--scene", scene}).status, 0);
+}
+
 // ---- Periodic boxes
 
 /// Packed once a dimension: 60 spheres in a box that follows from them.

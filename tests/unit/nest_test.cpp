@@ -1,15 +1,10 @@
 // Packings inside of spheres: one seed gives one nest, levels are certified by themselves and with each
-// other, files hold all of it, and what cannot lie inside is refused in one line.
+// other, and what cannot lie inside is refused in one line.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <memory>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "bernal/core/unit.hpp"
 #include "bernal/plan/plan.hpp"
@@ -18,66 +13,16 @@
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/nest.hpp"
-#include "bernal/scene/packing_bytes.hpp"
 #include "bernal/scene/read_scene.hpp"
-#include "files/bytes_of_file.hpp"
-#include "support/folder.hpp"
+#include "support/nests.hpp"
 
 namespace bernal {
-namespace {
+namespace nest_test {
 
-constexpr const char* particles =
-    "unit = \"mm\"\n[spheres]\npacking_fraction = 0.1\nradius = 1.5\n[[stage]]\ndo = \"insert\"\n";
-
-/// Ten pebbles of 6 cm in a box, with what lies inside.
-std::string pebbles(const std::string& inside) {
-  return fmt::format(
-      "unit = \"cm\"\nseed = 7\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\ncount = 10\n{}"
-      "diameter = {{ distribution = \"classes\", values = [6.0], shares = [1], names = [\"pebble\"], layers "
-      "= "
-      "[[{{ name = \"fuel\", radius = 2.5 }}, {{ name = \"shell\" }}]] }}\n[[stage]]\ndo = \"insert\"\n",
-      inside.empty() ? "" : "inside = " + inside + "\n");
-}
-
-/// A folder with both scenes.
-struct Scenes {
-  explicit Scenes(const std::string& inside =
-                      "{ scene = \"inner.toml\", class = \"pebble\", layer = \"fuel\", "
-                      "templates = 3 }",
-                  const std::string& inner = particles) {
-    folder.write("inner.toml", inner);
-    folder.write("outer.toml", pebbles(inside));
-  }
-  Packing packed(int threads = 1) const {
-    return run(build(read_scene(folder / "outer.toml")), {.threads = threads});
-  }
-  /// The line with which it is refused.
-  std::string refusal() const {
-    try {
-      build(read_scene(folder / "outer.toml"));
-    } catch (const Error& error) {
-      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-      return error.what();
-    }
-    return "";
-  }
-  testing::Folder folder;
-};
-
-void expect_same(const Packing& a, const Packing& b) {
-  EXPECT_EQ(a.spheres.x, b.spheres.x);
-  EXPECT_EQ(a.spheres.r, b.spheres.r);
-  ASSERT_EQ(a.inside.size(), b.inside.size());
-  for (std::size_t k = 0; k < a.inside.size(); ++k) {
-    EXPECT_EQ(a.inside[k].of_class, b.inside[k].of_class);
-    EXPECT_EQ(a.inside[k].spheres, b.inside[k].spheres);
-    EXPECT_EQ(a.inside[k].which, b.inside[k].which);
-    EXPECT_EQ(a.inside[k].rotations, b.inside[k].rotations);
-    ASSERT_EQ(a.inside[k].templates.size(), b.inside[k].templates.size());
-    for (std::size_t t = 0; t < a.inside[k].templates.size(); ++t)
-      expect_same(*a.inside[k].templates[t], *b.inside[k].templates[t]);
-  }
-}
+using testing::expect_same;
+using testing::Nested;
+using testing::particles;
+using testing::pebbles;
 
 TEST(Nest, LengthsInTwoUnitsAreComparedExactly) {
   EXPECT_TRUE(is_at_most(25.4, Unit::mm, 1, Unit::in));  // the double 25.4 is below 254/10
@@ -95,7 +40,7 @@ TEST(Nest, LengthsInTwoUnitsAreComparedExactly) {
 }
 
 TEST(Nest, OneSeedGivesOneNestForAnyNumberOfThreads) {
-  const Scenes scenes;
+  const Nested scenes;
   const Packing one = scenes.packed(1), two = scenes.packed(2);
   expect_same(one, two);
   ASSERT_EQ(one.inside.size(), 1U);
@@ -119,7 +64,7 @@ TEST(Nest, OneSeedGivesOneNestForAnyNumberOfThreads) {
 }
 
 TEST(Nest, RotationsAreUniform) {
-  Scenes scenes;
+  Nested scenes;
   scenes.folder.write("inner.toml",
                       "unit = \"mm\"\n[spheres]\ncount = 1\nradius = 5\n[[stage]]\ndo = \"insert\"\n");
   std::string outer = pebbles("{ scene = \"inner.toml\", templates = 1 }");
@@ -143,7 +88,7 @@ TEST(Nest, RotationsAreUniform) {
 }
 
 TEST(Nest, WhatIsCertifiedByLevelsDoesNotOverlapFlattened) {
-  const Packing packing = Scenes().packed();
+  const Packing packing = Nested().packed();
   const Certificate certificate = certify_levels(packing);
   EXPECT_TRUE(certificate.certified) << certificate.statement;
   EXPECT_EQ(certificate.spheres_of_all_levels, spheres_of_all_levels(packing));
@@ -165,7 +110,7 @@ TEST(Nest, WhatIsCertifiedByLevelsDoesNotOverlapFlattened) {
 /// The certificate of a nest that something was done to.
 template <class Spoil>
 Certificate certificate_of_spoiled(Spoil spoil) {
-  Packing packing = Scenes().packed();
+  Packing packing = Nested().packed();
   spoil(packing, packing.inside[0]);
   return certify_levels(packing);
 }
@@ -207,70 +152,8 @@ TEST(Nest, TheCertificateRefusesWhatIsWrong) {
           "overlapping");
 }
 
-TEST(Nest, FilesHoldAllOfIt) {
-  const Scenes scenes;
-  const Packing packing = scenes.packed();
-  const testing::Folder out;
-  const WrittenPacking written = write_packing(packing, out / "nest");
-  EXPECT_TRUE(written.certificate.certified) << written.certificate.statement;
-  const Packing read = read_packing(out / "nest");
-  expect_same(packing, read);
-  EXPECT_TRUE(certify_levels(read).certified);
-  expect_same(packing, packing_of_bytes(bytes_of(packing)));
-  // What is written makes the same again, and so does each packing inside by itself.
-  expect_same(packing, run(build(read_scene(out / "nest/scene.toml"))));
-  const Packing inner = run(build(read_scene(out / "nest/inside/pebble/template-002/scene.toml")));
-  EXPECT_EQ(inner.spheres.x, packing.inside[0].templates[1]->spheres.x);
-  // A second result takes the place of all of the first.
-  const Packing plain = run(build(parse_scene(pebbles(""), "plain.toml")));
-  write_packing(plain, out / "nest");
-  EXPECT_FALSE(std::filesystem::exists(out / "nest/inside"));
-  EXPECT_FALSE(std::filesystem::exists(out / "nest/nest.json"));
-}
-
-TEST(Nest, FilesThatDoNotGoTogetherAreRefused) {
-  const Packing packing = Scenes().packed();
-  const auto refusal = [&](const std::function<void(const std::filesystem::path&)>& spoil) {
-    const testing::Folder out;
-    write_packing(packing, out / "nest");
-    spoil(out / "nest");
-    try {
-      read_packing(out / "nest");
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  const auto rewrite = [](const std::filesystem::path& file, const auto& change) {
-    std::string text = bytes_of_file(file);
-    change(text);
-    std::ofstream(file, std::ios::binary) << text;
-  };
-  EXPECT_EQ(refusal([](const auto&) {}), "");
-  EXPECT_NE(refusal([&](const auto& nest) {
-              rewrite(nest / "inside/pebble/rotations.csv", [](std::string& text) {
-                text.erase(text.rfind('\n', text.size() - 2) + 1);  // the last of its lines
-              });
-            }).find("nest.json"),
-            std::string::npos);
-  EXPECT_NE(refusal([](const auto& nest) {
-              const auto inside = nest / "inside/pebble";
-              std::filesystem::rename(inside / "template-001", inside / "other");
-              std::filesystem::rename(inside / "template-002", inside / "template-001");
-              std::filesystem::rename(inside / "other", inside / "template-002");
-            }).find("inside[0].packings[0]"),
-            std::string::npos);
-  EXPECT_NE(refusal([&](const auto& nest) {
-              rewrite(nest / "nest.json", [](std::string& text) {
-                const std::string all = "\"spheres_of_all_levels\": ";
-                text.insert(text.find(all) + all.size(), "1");
-              });
-            }).find("spheres_of_all_levels"),
-            std::string::npos);
-}
-
 TEST(Nest, ALevelOfSpheresWithoutAClassIsOne) {
-  const Scenes scenes;
+  const Nested scenes;
   scenes.folder.write(
       "outer.toml",
       "unit = \"cm\"\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\ncount = 10\n"
@@ -285,14 +168,14 @@ TEST(Nest, ALevelOfSpheresWithoutAClassIsOne) {
 }
 
 TEST(Nest, EverySphereHasItsOwnWithoutTemplates) {
-  const Packing packing = Scenes("{ scene = \"inner.toml\" }").packed();
+  const Packing packing = Nested("{ scene = \"inner.toml\" }").packed();
   EXPECT_EQ(packing.inside[0].templates.size(), 10U);
   EXPECT_EQ(packing.inside[0].which[9], 9U);
   EXPECT_TRUE(certify_levels(packing).certified);
 }
 
 TEST(Nest, AnyDepth) {
-  Scenes scenes;
+  Nested scenes;
   scenes.folder.write("grain.toml",
                       "unit = \"um\"\n[spheres]\ncount = 5\nradius = 100\n[[stage]]\ndo = \"insert\"\n");
   scenes.folder.write(
@@ -313,7 +196,7 @@ TEST(Nest, AnyDepth) {
 TEST(Nest, BadInputIsRefusedInOneLine) {
   const auto expect_refusal = [](const std::string& inside, const char* words,
                                  const std::string& inner = particles) {
-    const std::string refusal = Scenes(inside, inner).refusal();
+    const std::string refusal = Nested(inside, inner).refusal();
     EXPECT_NE(refusal.find(words), std::string::npos) << inside << ": " << refusal;
   };
   expect_refusal("{ scene = \"inner.toml\", class = \"peble\" }", "did you mean \"pebble\"");
@@ -362,7 +245,7 @@ TEST(Nest, BadInputIsRefusedInOneLine) {
 }
 
 TEST(Nest, ARunThatIsStoppedFillsWhatItHas) {
-  const Scenes scenes;
+  const Nested scenes;
   const Plan plan = build(read_scene(scenes.folder / "outer.toml"));
   bool inside = false;
   RunOptions options{.threads = 1};
@@ -379,5 +262,5 @@ TEST(Nest, ARunThatIsStoppedFillsWhatItHas) {
   expect_same(packing, read_packing(out / "nest"));
 }
 
-}  // namespace
+}  // namespace nest_test
 }  // namespace bernal
