@@ -1,0 +1,1 @@
+#include "meshes/conforming_surface.hpp"

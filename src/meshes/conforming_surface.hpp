@@ -1,0 +1,93 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bernal/core/monitor.hpp"
+#include "bernal/core/vector.hpp"
+#include "bernal/geometry/mesh.hpp"
+#include "solids/solids.hpp"
+
+namespace bernal {
+
+/// A part of the surface that lies on one sphere, neck, wall or end of a period.
+struct SurfacePatch {
+  enum class Kind {
+    sphere,      ///< index: the sphere's in the packing
+    neck,        ///< index: its place in `ConformingSurface::necks`
+    cut_face,    ///< the flat face of a cap, or where a neck begins inside a sphere; index: the sphere's
+    wall,        ///< index: 0 to 5 of a box as Cut::face; of a cylinder 0 its side, 1 its floor, 2 its lid
+    period_end,  ///< index: Cut::face
+  };
+  Kind kind = Kind::sphere;
+  std::uint32_t index = 0;
+  /// Behind the triangles and in front of them, where their normals point; `nothing` where no mesh is made.
+  std::array<std::int32_t, 2> regions = {nothing, nothing};
+  static constexpr std::int32_t nothing = -1;
+};
+
+/// What a volume mesher fills.
+struct MeshRegion {
+  std::string group;                    ///< "fluid", "spheres" or "bridges"
+  std::optional<std::uint32_t> sphere;  ///< for a piece of a sphere: its index in the packing
+  Vector<3> seed = Vector<3>::Zero();   ///< a point inside
+};
+
+/// A neck as it was meshed: its radius may be smaller than asked for.
+struct MeshedNeck {
+  /// The second is absent where the neck stands on a wall.
+  std::uint32_t sphere = 0;
+  std::optional<std::uint32_t> other = {};
+  std::uint32_t wall = 0;  ///< as SurfacePatch::index of walls
+  double radius = 0;
+};
+
+/// What is known of the surface beside its triangles. Volumes and areas are those of one period.
+struct SurfaceStatement {
+  double least_edge = 0, least_angle = 0;  ///< of all triangles; the angle in degrees
+  double least_angle_off_necks = 0;        ///< of all triangles that do not lie on necks, in degrees
+  Vector<3> place_of_least_angle = Vector<3>::Zero();
+  std::size_t shrunk_necks = 0;    ///< whose radius is smaller than asked for, so that others stay clear
+  double largest_shrink = 0;       ///< over the radius asked for
+  double fluid_volume = 0;         ///< in closed form
+  double meshed_fluid_volume = 0;  ///< between the triangles
+  double contact_area = 0;         ///< cross-sections of necks, flat faces of caps
+};
+
+/// The triangles that bound the fluid and, where asked for, the solids of a bed: every patch once, also where
+/// it lies between two regions. The boundary of each region is closed, triangles meet only in common edges
+/// and corners, and normals of patches of spheres, necks and flat faces point into the fluid, those of walls
+/// and ends of periods out of the domain.
+struct ConformingSurface {
+  std::vector<Vector<3>> vertices;
+  std::vector<FaceCorners> triangles;
+  std::vector<std::uint32_t> patch;  ///< of each triangle
+  std::vector<SurfacePatch> patches;
+  std::vector<MeshRegion> regions;  ///< the first is the fluid
+  std::vector<MeshedNeck> necks;
+  /// Vertices of opposite ends of periods, (lower, upper) by axis: equal but for the coordinate along it.
+  std::array<std::vector<std::array<std::uint32_t, 2>>, 3> periodic;
+  std::vector<double> size;  ///< the length of edges asked for at each vertex
+  SurfaceStatement statement;
+};
+
+struct SurfaceMeshOptions {
+  double sphere_edge = 0.3;  ///< longest edges on spheres, in radii
+  double neck_edge = 0.15;   ///< edges where necks begin, in radii of the smaller sphere
+  double per_gap = 2;        ///< edges where surfaces are near each other, in widths of the gap there
+  bool solids = false;       ///< whether what is inside spheres and necks is a region too
+};
+
+/// The surface of a bed, made without a Boolean kernel: points along the circles in which spheres are cut,
+/// the Delaunay triangulation of each sphere outside of them, refined to the asked sizes, and walls and ends
+/// of periods with the same points. Vertices lie on the true surfaces to rounding, so triangles of spheres
+/// that do not overlap do not cross. The same for any number of threads.
+///
+/// Precondition: solids of three dimensions in a box, periodic or not, or a cylinder. Throws
+/// Error{bad_argument} with one line for other domains and for what it cannot make, Cancelled. Cost: O(N),
+/// some milliseconds and some hundred vertices a sphere.
+ConformingSurface conforming_surface(const Solids&, const SurfaceMeshOptions&, const Monitor& monitor = {});
+
+}  // namespace bernal
