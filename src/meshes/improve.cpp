@@ -35,10 +35,11 @@ class Improver {
       monitor.report({"improve", static_cast<double>(report_.passes) / options_.passes,
                       fmt::format("{} tetrahedra of SICN below {}, the least {:.3f}", grouped(bad.size()),
                                   options_.goal, near_.quality(bad.front()))});
+      before_ = near_.take_touched();
       std::size_t changed = 0;
       for (const std::uint32_t t : bad) {
         throw_if_interrupted();
-        if (near_.is_there(t) && near_.quality(t) < options_.goal) changed += mend(t);
+        if (is_new(t) && near_.quality(t) < options_.goal) changed += mend(t);
       }
       if (changed == 0) break;
     }
@@ -47,6 +48,14 @@ class Improver {
   }
 
  private:
+  /// Whether something near it has changed since it was last looked at.
+  bool is_new(std::uint32_t t) const {
+    return near_.is_there(t) &&
+           (report_.passes == 0 || std::ranges::any_of(near_.corners(t), [&](std::uint32_t vertex) {
+              return vertex >= before_.size() || before_[vertex];
+            }));
+  }
+
   bool mend(std::uint32_t t) {
     bool changed = false;
     const TetrahedronCorners corners = near_.corners(t);
@@ -95,7 +104,10 @@ class Improver {
         moved = is_better(place + step * Vector<3>(directions[k][0], directions[k][1], directions[k][2]));
       if (!moved) step *= 0.5;
     }
-    if (best >= before + least_gain) return ++report_.moved > 0;
+    if (best >= before + least_gain) {
+      for (const std::uint32_t t : star) near_.touch(t);
+      return ++report_.moved > 0;
+    }
     near_.move(vertex, begin);
     return false;
   }
@@ -328,6 +340,7 @@ class Improver {
   TetrahedraNear near_;
   ImproveOptions options_;
   ImproveReport report_;
+  std::vector<std::uint8_t> before_;  ///< vertices that the pass before touched
 };
 
 }  // namespace

@@ -14,7 +14,10 @@ bool has(const TetrahedronCorners& corners, std::uint32_t vertex) {
 }  // namespace
 
 TetrahedraNear::TetrahedraNear(VolumeMesh& mesh)
-    : mesh_(mesh), is_fixed_(mesh.vertices.size(), 0), slot_(mesh.vertices.size(), none) {
+    : mesh_(mesh),
+      is_fixed_(mesh.vertices.size(), 0),
+      is_touched_(mesh.vertices.size(), 0),
+      slot_(mesh.vertices.size(), none) {
   for (const FaceCorners& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle) is_fixed_[vertex] = 1;
 }
@@ -83,6 +86,7 @@ std::uint32_t TetrahedraNear::behind(std::uint32_t t, int corner) const {
 void TetrahedraNear::replace(std::span<const std::uint32_t> old, std::span<const TetrahedronCorners> by) {
   const std::uint32_t of = region(old[0]);
   for (const std::uint32_t t : old) {
+    touch(t);
     for (const std::uint32_t vertex : corners(t))
       if (has_star(vertex)) std::erase(stars_[slot_[vertex]], t);
     mesh_.region[t] = none;
@@ -107,6 +111,7 @@ std::uint32_t TetrahedraNear::add_vertex(const Vector<3>& at) {
   const auto vertex = static_cast<std::uint32_t>(mesh_.vertices.size());
   mesh_.vertices.push_back(at);
   is_fixed_.push_back(0);
+  is_touched_.push_back(1);
   slot_.push_back(none);
   keep_star(vertex);
   return vertex;
@@ -115,8 +120,15 @@ std::uint32_t TetrahedraNear::add_vertex(const Vector<3>& at) {
 void TetrahedraNear::drop_vertex() {
   mesh_.vertices.pop_back();
   is_fixed_.pop_back();
+  is_touched_.pop_back();
   slot_.pop_back();
   stars_.pop_back();
+}
+
+std::vector<std::uint8_t> TetrahedraNear::take_touched() {
+  std::vector<std::uint8_t> touched(is_touched_.size(), 0);
+  touched.swap(is_touched_);
+  return touched;
 }
 
 void TetrahedraNear::close() {

@@ -45,6 +45,12 @@ class TetrahedraNear {
   std::uint32_t add_vertex(const Vector<3>& at);
   /// Takes the vertex away that was added last. Precondition: no tetrahedron has it.
   void drop_vertex();
+  /// Marks the corners of one that changes its shape, as `replace` does.
+  void touch(std::uint32_t t) {
+    for (const std::uint32_t vertex : corners(t)) is_touched_[vertex] = 1;
+  }
+  /// Which vertices are marked; none is afterwards.
+  std::vector<std::uint8_t> take_touched();
   /// Leaves no gaps in the mesh: what was replaced and vertices without a tetrahedron go.
   void close();
 
@@ -52,7 +58,7 @@ class TetrahedraNear {
   void keep_star(std::uint32_t vertex);
 
   VolumeMesh& mesh_;
-  std::vector<std::uint8_t> is_fixed_;
+  std::vector<std::uint8_t> is_fixed_, is_touched_;
   std::vector<std::uint32_t> slot_;  ///< of each vertex
   std::vector<std::vector<std::uint32_t>> stars_;
   std::vector<std::uint32_t> gaps_;  ///< tetrahedra that are not there
