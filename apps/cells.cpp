@@ -53,17 +53,14 @@ void print_statistics(const Packing& packing, const Cells& cells, const CellStat
 }
 
 /// Statistics, and the table if one is asked for.
-void look_at_cells(const Packing& packing, const CellsCall& call, ProgressBar& bar) {
-  bar.now("cells");
-  const Cells cells = cells_of(packing, call.options.cells);
-  const std::vector<CellShape> shapes = shapes_of(cells);
-  const CellStatistics found = statistics_of(cells, shapes);
-  bar.clear();
-  if (!call.table.empty()) write_cell_table(packing, cells, shapes, call.table);
+void look_at_cells(const Packing& packing, const ShapedCells& made, const CellsCall& call) {
+  if (!call.table.empty()) write_cell_table(packing, made, call.table);
+  if (!call.json && call.quiet) return;
+  const CellStatistics found = statistics_of(made.cells, made.shapes);
   if (call.json)
-    fmt::print("{}", cell_statistics_as_json(packing, cells, found));
-  else if (!call.quiet)
-    print_statistics(packing, cells, found);
+    fmt::print("{}", cell_statistics_as_json(packing, made.cells, found));
+  else
+    print_statistics(packing, made.cells, found);
 }
 
 int write_cells_of(CellsCall call) try {
@@ -72,6 +69,9 @@ int write_cells_of(CellsCall call) try {
   if (call.resolution > 0) call.options.resolution = call.resolution;
   if (call.file == "-")
     throw Error(ErrorCode::bad_argument, "a format may need several files; give -o the name of one");
+  if (!call.file.empty() && call.table.lexically_normal() == call.file.lexically_normal())
+    throw Error(ErrorCode::bad_argument, "-o and --table name the same file; give each its own",
+                {call.file.string()});
   std::optional<tbb::global_control> limit;
   if (call.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
@@ -80,10 +80,17 @@ int write_cells_of(CellsCall call) try {
   const Packing packing = read_packing(call.folder);
   say_if_unpublished(call.folder);
   if (!call.options.format.empty()) require_cell_format(call.options, packing.spheres.dimension());
-  if (call.options.format.empty() || call.json || !call.table.empty()) look_at_cells(packing, call, bar);
+  std::optional<ShapedCells> made;
+  if (call.options.format.empty() || call.json || !call.table.empty()) {
+    bar.now("cells");
+    made = shaped_cells_of(packing, call.options.cells);
+    bar.clear();
+    look_at_cells(packing, *made, call);
+  }
   if (call.options.format.empty()) return exit_code::done;
   bar.now("write");
-  const WrittenCells written = write_cells(packing, call.options, call.file, bar.monitor());
+  const WrittenCells written =
+      write_cells(packing, call.options, call.file, bar.monitor(), made ? &*made : nullptr);
   bar.clear();
   if (call.quiet) return exit_code::done;
   say(stderr, "{:<10} {}\n", call.options.format, written.note);

@@ -14,8 +14,8 @@ struct CellFile {
   const Packing& packing;
   const CellFileOptions& options;
   const std::filesystem::path& name;  ///< of the file, in the folder
-  Cells cells = {};
-  std::vector<CellShape> shapes = {};
+  const Cells& cells;
+  const std::vector<CellShape>& shapes;
   Monitor monitor = {};
 
   std::string_view unit() const { return name_of(packing.scene.unit); }

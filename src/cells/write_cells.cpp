@@ -92,6 +92,12 @@ Cells cells_of(const Packing& packing, const CellsOptions& options) {
   return cells_of(with_weights(packing.spheres, packing.weights), packing.domain, options);
 }
 
+ShapedCells shaped_cells_of(const Packing& packing, const CellsOptions& options) {
+  ShapedCells made{.cells = cells_of(packing, options)};
+  made.shapes = shapes_of(made.cells);
+  return made;
+}
+
 std::vector<CellFormat> cell_formats() {
   std::vector<CellFormat> all;
   for (const CellWriter& writer : cell_writers()) all.push_back(writer.format);
@@ -117,7 +123,7 @@ void require_cell_format(const CellFileOptions& options, int dimension) {
 }
 
 WrittenCells write_cells(const Packing& packing, const CellFileOptions& options, const fs::path& named,
-                         const Monitor& monitor) {
+                         const Monitor& monitor, const ShapedCells* made) {
   require_cell_format(options, packing.spheres.dimension());
   const CellWriter& writer = writer_of(options.format);
   const fs::path name = named.filename(), folder = folder_of(named);
@@ -132,12 +138,15 @@ WrittenCells write_cells(const Packing& packing, const CellFileOptions& options,
   }
   require_free(folder, names);
   const Interruptible interruptible(monitor);
-  CellFile file{.packing = packing, .options = options, .name = name, .monitor = monitor};
   if (packing.spheres.empty()) refuse("there are no spheres, and no cells");
-  if (!writer.is_image) {
-    file.cells = cells_of(packing, options.cells);
-    file.shapes = shapes_of(file.cells);
-  }
+  const ShapedCells own = made || writer.is_image ? ShapedCells() : shaped_cells_of(packing, options.cells);
+  const auto& [cells, shapes] = made ? *made : own;
+  const CellFile file{.packing = packing,
+                      .options = options,
+                      .name = name,
+                      .cells = cells,
+                      .shapes = shapes,
+                      .monitor = monitor};
   StagedFolder staged(folder);
   WrittenCells written;
   written.note = writer.write(file, staged);
@@ -147,8 +156,8 @@ WrittenCells write_cells(const Packing& packing, const CellFileOptions& options,
   return written;
 }
 
-void write_cell_table(const Packing& packing, const Cells& cells, const std::vector<CellShape>& shapes,
-                      const fs::path& file) {
+void write_cell_table(const Packing& packing, const ShapedCells& made, const fs::path& file) {
+  const auto& [cells, shapes] = made;
   const fs::path folder = folder_of(file), name = file.filename();
   require_free(folder, {name.string()});
   StagedFolder staged(folder);

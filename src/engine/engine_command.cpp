@@ -1,14 +1,11 @@
 #include "engine/engine_command.hpp"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 
 #include <fmt/format.h>
 
 #include "bernal/engine/engine_error.hpp"
+#include "process/find_program.hpp"
 
 namespace bernal::engine {
 namespace {
@@ -31,11 +28,6 @@ std::vector<std::string> executable_of(const SceneEngine& engine) {
   return own.empty() ? std::vector{std::string(dialect_of(engine).executable)} : own;
 }
 
-bool is_program(const std::filesystem::path& file) {
-  struct stat status {};
-  return stat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) && access(file.c_str(), X_OK) == 0;
-}
-
 std::string at_or_refuse(const std::string& name, bool is_own, std::string_view package, std::string_view key,
                          const SceneEngine& engine) {
   const std::filesystem::path found = program_at(name);
@@ -49,20 +41,6 @@ std::string at_or_refuse(const std::string& name, bool is_own, std::string_view 
 }
 
 }  // namespace
-
-std::filesystem::path program_at(const std::string& name) {
-  if (name.find('/') != std::string::npos)
-    return is_program(name) ? std::filesystem::absolute(name) : std::filesystem::path();
-  const char* path = std::getenv("PATH");
-  std::string all = path ? path : "/usr/local/bin:/usr/bin:/bin";
-  for (std::size_t from = 0; from <= all.size();) {
-    const std::size_t to = std::min(all.find(':', from), all.size());
-    const std::filesystem::path folder = to > from ? all.substr(from, to - from) : ".";
-    if (is_program(folder / name)) return std::filesystem::absolute(folder / name);
-    from = to + 1;
-  }
-  return {};
-}
 
 std::vector<std::string> words_of(const SceneEngine& engine) {
   std::vector<std::string> words = launcher_of(engine.process());

@@ -14,9 +14,6 @@ std::vector<std::string> words_of(const SceneEngine& engine);
 /// The same in one line, as a shell would have it.
 std::string in_shell(const std::vector<std::string>& words);
 
-/// Where a program is: as a shell finds it. Empty where there is none.
-std::filesystem::path program_at(const std::string& name);
-
 /// The words with the programs where they are: the first, and after it the engine. Throws EngineError
 /// with the package that has what is missing.
 std::vector<std::string> found_words(const SceneEngine& engine);

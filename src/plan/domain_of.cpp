@@ -21,6 +21,7 @@
 #include "core/lower_case.hpp"
 #include "domain/flattened.hpp"
 #include "domain/rounded.hpp"
+#include "domain/without_rod.hpp"
 #include "files/sha256.hpp"
 #include "scene/given_files.hpp"
 #include "scene/scene_entries.hpp"
@@ -221,23 +222,8 @@ struct MakeDomain {
   }
 };
 
-/// The part of a profile with r >= `radius`.
-std::vector<Vector<2>> beyond(const std::vector<Vector<2>>& profile, double radius) {
-  std::vector<Vector<2>> part;
-  const auto add = [&](const Vector<2>& p) {
-    if (part.empty() || (p != part.back() && p != part.front())) part.push_back(p);
-  };
-  for (std::size_t k = 0; k < profile.size(); ++k) {
-    const Vector<2>&a = profile[k], &b = profile[(k + 1) % profile.size()];
-    if (a[0] >= radius) add(a);
-    if ((a[0] - radius) * (b[0] - radius) < 0)
-      add({radius, a[1] + (b[1] - a[1]) * ((radius - a[0]) / (b[0] - a[0]))});
-  }
-  return part;
-}
-
-/// What a cylinder about the same axis, to rounding, leaves of a solid of revolution that it pierces from end
-/// to end: another one. Nothing where it is otherwise, or what is left has several pieces.
+/// What a cylinder about the same axis, to rounding, leaves of a solid of revolution, from end to end or
+/// ending within: another one. Nothing where it is otherwise, or what is left has several pieces.
 std::optional<Domain> without_core(const Domain& whole, const SceneContainer& obstacle) {
   constexpr double rounding = 1e-12;
   const auto* core = std::get_if<Cylinder>(&obstacle);
@@ -255,9 +241,7 @@ std::optional<Domain> without_core(const Domain& whole, const SceneContainer& ob
   const Vector<3> base = core->base - solid.base;
   const double from = base.dot(axis), to = from + core->height * along.dot(axis);
   if (axis.cross(along).norm() > rounding || (base - from * axis).norm() > rounding * core->radius) return {};
-  for (const Vector<2>& p : solid.profile)
-    if (p[1] < std::min(from, to) || p[1] > std::max(from, to)) return {};
-  solid.profile = beyond(solid.profile, core->radius);
+  solid.profile = without_rod(solid.profile, core->radius, std::min(from, to), std::max(from, to));
   if (solid.profile.size() < 3) return {};
   try {
     require_profile(solid);

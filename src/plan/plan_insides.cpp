@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -88,12 +90,19 @@ bool differ(const Scene& scene, std::uint32_t of_class, const RadiiOfClass& radi
   return radii.least < radii.largest || std::ranges::any_of(layers, is_drawn);
 }
 
+/// What lies inside one sphere, and the radius that its scene asked for, in its unit, if it did.
+struct PlanOfBall {
+  Plan plan;
+  std::optional<double> asked_radius;
+};
+
 /// Errors of what lies inside say so, at their own place where they have one.
-Plan plan_of_ball(const Plan& around, const Inside& inside, const std::string& name, double radius,
-                  const ScenesAround& scenes) {
+PlanOfBall plan_of_ball(const Plan& around, const Inside& inside, const std::string& name, double radius,
+                        const ScenesAround& scenes) {
   const Unit unit = around.scene.unit;
   try {
-    return build_inside(read_scene_inside(inside.scene, {radius, unit}), scenes);
+    const SceneInside read = read_scene_inside(inside.scene, {radius, unit});
+    return {build_inside(read.scene, scenes), read.asked_radius};
   } catch (const Error& error) {
     const Location& at = error.location();
     const std::string of = at.line > 0 || at.file.empty() ? "" : at.file + ": ";
@@ -115,17 +124,45 @@ void require_no_circle(const Inside& inside, const ScenesAround& around) {
               inside.locations.of("scene"));
 }
 
+/// Where the container of what lies inside gives way to a ball of another radius: what was asked and what is
+/// used. Else nothing.
+std::string hint_of_ball(const PlanOfBall& of, const Inside& inside, bool differ) {
+  constexpr double rounding = 1e-9;  // of lengths in two units
+  const double used = std::get<Sphere>(of.plan.domain).radius;
+  if (!of.asked_radius || std::abs(*of.asked_radius / used - 1) <= rounding) return {};
+  const std::string_view unit = name_of(of.plan.scene.unit);
+  return fmt::format(
+      "{} asks for a sphere of radius {:.10g} {} as its container; {}{:.10g} {} is used, the "
+      "radius of the ball that it fills{}",
+      plain_text(inside.scene.filename().string()), *of.asked_radius, unit, differ ? "about " : "", used,
+      unit, differ ? ", of each sphere its own" : "");
+}
+
+/// A mass counts spheres by the density of their material, which is not all that these are made of.
+void require_no_mass(const Scene& scene, const FilledClass& of, const Inside& inside) {
+  const Target& target = scene.target;
+  if (!layers_in(scene, of.of_class).empty() || !(target.mass_counted || target.bulk_density_asked)) return;
+  throw Error(
+      ErrorCode::bad_scene,
+      fmt::format("\"{}\" is of solid spheres, and those of {} are filled by others: give a \"count\" or a "
+                  "\"packing_fraction\" in its place, and explain says what they weigh",
+                  target.mass_counted ? "mass" : "bulk_density", of.name),
+      inside.locations.of("scene"));
+}
+
 PlannedInside planned(const Plan& whole, const Inside& inside, const ScenesAround& around) {
   const Scene& scene = whole.scene;
   require_no_circle(inside, around);
   const FilledClass of = filled_class(scene, inside);
+  require_no_mass(scene, of, inside);
   const RadiiOfClass radii = radii_of_class(whole, of.of_class);
   PlannedInside made{.of_class = of.of_class,
                      .layer = of.layer,
                      .name = of.name,
                      .filled = std::max(1.0, std::round(radii.count)),
                      .templates = inside.templates};
-  if (differ(scene, of.of_class, radii)) {
+  const bool balls_differ = differ(scene, of.of_class, radii);
+  if (balls_differ) {
     if (inside.templates)
       throw Error(ErrorCode::bad_scene,
                   fmt::format("the balls inside of {} have several radii, and each needs a packing of its "
@@ -135,7 +172,10 @@ PlannedInside planned(const Plan& whole, const Inside& inside, const ScenesAroun
     plan_of_ball(whole, inside, of.name, ball_in(scene, of.of_class, radii.least), around);
   }
   made.ball = ball_in(scene, of.of_class, radii.usual);
-  made.plan = plan_of_ball(whole, inside, of.name, made.ball, around);
+  PlanOfBall of_ball = plan_of_ball(whole, inside, of.name, made.ball, around);
+  if (std::string hint = hint_of_ball(of_ball, inside, balls_differ); !hint.empty())
+    of_ball.plan.hints.push_back(std::move(hint));
+  made.plan = std::move(of_ball.plan);
   return made;
 }
 
@@ -215,7 +255,7 @@ void plan_insides(Plan& whole, const ScenesAround& around) {
 
 Plan plan_in_ball(const Plan& around, const PlannedInside& inside, double radius) {
   const auto k = static_cast<std::size_t>(&inside - around.insides.data());
-  return plan_of_ball(around, around.scene.inside[k], inside.name, radius, {});
+  return plan_of_ball(around, around.scene.inside[k], inside.name, radius, {}).plan;
 }
 
 }  // namespace bernal

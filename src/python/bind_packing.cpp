@@ -213,13 +213,12 @@ py::array_t<T> column_of(const std::vector<CellShape>& shapes, const Value& valu
 }
 
 py::dict cells_of_packing(const Packing& packing, int flat_sides) {
-  Cells cells;
-  std::vector<CellShape> shapes;
+  ShapedCells made;
   {
     const Unlocked others_run;
-    cells = cells_of(packing, {flat_sides});
-    shapes = shapes_of(cells);
+    made = shaped_cells_of(packing, {flat_sides});
   }
+  const auto& [cells, shapes] = made;
   const auto d = static_cast<std::size_t>(cells.dimension);
   const auto or_none = [](std::uint32_t number) {
     return number == Cells::none ? std::int64_t{-1} : static_cast<std::int64_t>(number);

@@ -14,6 +14,7 @@
 #include "files/bytes_of_file.hpp"
 #include "files/csv_lines.hpp"
 #include "files/output_file.hpp"
+#include "result/free_places.hpp"
 #include "scene/insides.hpp"
 #include "scene/unpublished.hpp"
 
@@ -77,16 +78,14 @@ fs::path in_folder(const fs::path& folder, const std::string& name, const fs::pa
 }  // namespace
 
 std::vector<InsideFiles> files_of_insides(const Packing& packing) {
-  constexpr std::size_t least_digits = 3;
   std::vector<InsideFiles> all;
   for (std::size_t k = 0; k < packing.inside.size(); ++k) {
     InsideFiles& files = all.emplace_back();
     files.folder = "inside/" + filled_class(packing.scene, packing.scene.inside[k]).folder;
-    files.table = files.folder + "/rotations.csv";
+    files.table = fmt::format("{}/{}", files.folder, table_of_rotations);
     const std::size_t n = packing.inside[k].templates.size();
-    const std::size_t digits = std::max(least_digits, fmt::format("{}", n).size());
     for (std::size_t t = 1; t <= n; ++t)
-      files.packings.push_back(fmt::format("{}/template-{:0{}}", files.folder, t, digits));
+      files.packings.push_back(fmt::format("{}/{}", files.folder, folder_of_template(t, n)));
     if (n > 0) files.scene = files.packings.front() + "/scene.toml";
   }
   return all;

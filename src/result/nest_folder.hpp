@@ -12,6 +12,9 @@ namespace bernal {
 /// The file that says which packings lie inside the spheres of a result.
 inline constexpr const char* nest_file = "nest.json";
 
+/// Beside the packings inside the spheres of a class: which of them each sphere holds, and how it is turned.
+inline constexpr const char* table_of_rotations = "rotations.csv";
+
 /// Where what lies inside the spheres of a packing stands in the folder of its result.
 std::vector<InsideFiles> files_of_insides(const Packing&);
 

@@ -14,6 +14,7 @@
 #include "files/bytes_of_file.hpp"
 #include "files/sha256.hpp"
 #include "report/report.hpp"
+#include "result/free_places.hpp"
 #include "result/nest_folder.hpp"
 #include "scene/given_files.hpp"
 #include "scene/output_table.hpp"
@@ -43,19 +44,6 @@ bool stands_in(const fs::path& file, const fs::path& folder) {
   return fs::equivalent(fs::weakly_canonical(fs::absolute(file), unknown).parent_path(), folder, unknown);
 }
 
-/// Whether nothing is lost where bernal writes that scene again: whoever wrote it by hand left out defaults,
-/// or put in comments.
-bool is_as_written(const fs::path& scene) {
-  if (!is_regular(scene)) return false;
-  try {
-    Scene written = read_scene(scene);
-    put_long_lists_beside(written);
-    return scene_as_toml(written, scene.parent_path()) == bytes_of_file(scene);
-  } catch (const Error&) {
-    return false;
-  }
-}
-
 /// A file that a scene names, and its digest, once the scene has been run.
 struct NamedFile {
   fs::path& file;
@@ -79,18 +67,6 @@ std::vector<NamedFile> files_and_digests(Scene& scene) {
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& why) {
   throw Error(ErrorCode::cannot_write, why, {file.string()});
-}
-
-/// Whether all files below are those of an earlier result in the folder, and there are any.
-bool holds_only(const fs::path& below, const fs::path& folder, const std::vector<std::string>& earlier) {
-  std::size_t found = 0;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(below)) {
-    if (!entry.is_symlink() && entry.is_directory()) continue;
-    const std::string name = entry.path().lexically_relative(folder).generic_string();
-    if (std::ranges::find(earlier, name) == earlier.end()) return false;
-    ++found;
-  }
-  return found > 0;
 }
 
 }  // namespace
@@ -180,11 +156,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
     if (options.with_mesh && file.filename().string().size() > longest_name)
       refuse(file, "has too long a name for a copy, which ends in its digest; rename it");
   }
-  std::vector<std::string> names(names_of_result.begin(), names_of_result.end());
-  for (Output& output : packed.outputs) {
-    complete_output(output, packed);
-    std::ranges::move(files_of(output), std::back_inserter(names));
-  }
+  const std::vector<std::string> names = names_of_result_of(scene);
   for (const auto& [named, sha256] : files) {
     const bool is_start = packed.start.file && &named == &*packed.start.file;
     std::error_code unknown;  // of a link that leads to itself
@@ -197,22 +169,7 @@ void check_writable(const fs::path& folder, const Scene& scene, const WriteOptio
                              file.filename() == meant.filename() ? "" : ", by a link"));
   }
   check_writable(folder);
-  const std::vector<std::string> earlier = files_of_earlier_result(folder);
-  for (const std::string& name : names) {
-    const fs::path there = folder / name;
-    std::error_code unknown;
-    if (!stands(there) || std::ranges::find(earlier, name) != earlier.end()) continue;
-    if (fs::is_directory(there, unknown)) {
-      if (holds_only(there, folder, earlier)) continue;
-      refuse(there,
-             "is a folder with more in it than bernal wrote, or changed since, and the result would take its "
-             "place; give another ‹folder›, or move it away");
-    }
-    if (name == "scene.toml" && is_as_written(there)) continue;
-    refuse(there,
-           "is no result of bernal's, or was changed since, and the result would take its place; give "
-           "another ‹folder›, or remove it");
-  }
+  require_free_places(folder, scene, files_of_earlier_result(folder));
 }
 
 }  // namespace bernal

@@ -91,7 +91,8 @@ FilledClass filled_class(const Scene& scene, const Inside& inside) {
   return filled;
 }
 
-void put_into_ball(Scene& scene, const BallOfSphere& ball) {
+std::optional<double> put_into_ball(Scene& scene, const BallOfSphere& ball) {
+  std::optional<double> asked;
   if (!scene.container.locations.whole.file.empty()) {
     const bool is_bare = scene.container.obstacles.empty() && scene.container.rounding == 0;
     if (!std::holds_alternative<Sphere>(scene.container) || !is_bare)
@@ -99,10 +100,12 @@ void put_into_ball(Scene& scene, const BallOfSphere& ball) {
                   "what lies inside a sphere is packed into the ball there: leave [container] out of this "
                   "scene, or make it a sphere without obstacles, whose place the ball takes",
                   scene.container.locations.whole);
+    asked = std::get<Sphere>(scene.container).radius;
   }
   const Locations where = scene.container.locations;
   scene.container = Sphere{.radius = largest_at_most(ball.radius, ball.unit, scene.unit)};
   scene.container.locations = where;
+  return asked;
 }
 
 void check_insides(const Scene& scene) {

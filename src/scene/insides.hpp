@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,20 @@ struct BallOfSphere {
   Unit unit = Unit::m;
 };
 
-/// The scene of what lies inside: `read_scene`, with the ball in the place of its container, which may be
-/// left out. Throws Error{bad_scene} where the container is none that a ball can take the place of.
-Scene read_scene_inside(const std::filesystem::path& file, const BallOfSphere&);
+/// The scene of what lies inside, with the ball in the place of its container.
+struct SceneInside {
+  Scene scene;
+  std::optional<double> asked_radius = {};  ///< of the container, in the scene's unit; none if it is left out
+};
+
+/// `read_scene` of what lies inside, whose container may be left out. Throws Error{bad_scene} where that is
+/// none that a ball can take the place of.
+SceneInside read_scene_inside(const std::filesystem::path& file, const BallOfSphere&);
 
 /// The ball as the container, of the largest radius in the scene's unit that is at most the ball's, see
-/// `largest_at_most`. Throws Error{bad_scene} at the container's place where that is no sphere, or has
-/// obstacles.
-void put_into_ball(Scene&, const BallOfSphere&);
+/// `largest_at_most`. Returns the radius of the container that gives way, if there is one. Throws
+/// Error{bad_scene} at the container's place where that is no sphere, or has obstacles.
+std::optional<double> put_into_ball(Scene&, const BallOfSphere&);
 
 /// What is filled: the place of a class in `classes_of(scene)`, 0 where that is empty, and of its innermost
 /// layer in its layers. Throws Error{bad_scene} for names that are not there.

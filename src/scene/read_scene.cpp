@@ -54,6 +54,9 @@ class Reader : private TableReader {
     return scene;
   }
 
+  /// Of the container that gave way to a ball.
+  const std::optional<double>& asked_radius() const { return asked_radius_; }
+
  private:
   /// A misspelt table is reported as such, before anything is missed for it.
   void check_tables(const toml::table& root) const {
@@ -76,7 +79,7 @@ class Reader : private TableReader {
     scene.locations.whole = {file_};
   }
 
-  void read_container(const toml::table& root, Scene& scene) const {
+  void read_container(const toml::table& root, Scene& scene) {
     if (ball_ && !root.contains("container")) {
       put_into_ball(scene, *ball_);
       return;
@@ -84,7 +87,7 @@ class Reader : private TableReader {
     const toml::table& table = table_in(root, "container");
     read_solid(table, known_words_in(schema::container_entries()), "[container]", scene.container);
     if (!scene.container.meshes().empty()) require_unit(root, table);
-    if (ball_) put_into_ball(scene, *ball_);
+    if (ball_) asked_radius_ = put_into_ball(scene, *ball_);
   }
   void require_unit(const toml::table& root, const toml::table& of_mesh) const {
     if (!root.contains("unit"))
@@ -217,6 +220,7 @@ class Reader : private TableReader {
                                                              "engine",    "stage",   "output"};
 
   std::optional<BallOfSphere> ball_;  ///< that takes the place of the container
+  std::optional<double> asked_radius_;
 };
 
 std::string read_text_of_scene(const std::filesystem::path& file) {
@@ -226,11 +230,14 @@ std::string read_text_of_scene(const std::filesystem::path& file) {
 
 }  // namespace
 
-Scene read_scene_inside(const std::filesystem::path& file, const BallOfSphere& ball) {
+SceneInside read_scene_inside(const std::filesystem::path& file, const BallOfSphere& ball) {
   const std::string text = read_text_of_scene(file);
   if (is_blank(text))
     throw Error(ErrorCode::bad_scene, "the scene is empty; it needs at least [spheres]", {file.string()});
-  return Reader(file, ball).read_all(parse_toml(text, file));
+  Reader reader(file, ball);
+  SceneInside read{reader.read_all(parse_toml(text, file))};
+  read.asked_radius = reader.asked_radius();
+  return read;
 }
 
 Scene scene_of_table(const toml::table& root, const std::filesystem::path& file) {

@@ -350,5 +350,20 @@ TEST(CellFiles, AreWrittenWholeAndRefuseWhatTheyAreNot) {
   EXPECT_NEAR(json.at("volume").get<double>(), 1000, 1e-6);
 }
 
+TEST(CellFiles, AreThoseOfCellsThatAreMadeAlready) {
+  const Folder folder;
+  const Packing packing = packing_of(scattered(40, 0.8, 1.2, {Vector<3>::Zero(), Vector<3>::Constant(10)}, 1),
+                                     periodic_box(Vector<dynamic>(Vector<3>::Constant(10))));
+  ShapedCells made = shaped_cells_of(packing);
+  const auto written = [&](const ShapedCells* cells) {
+    write_cells(packing, {.format = "obj"}, folder / "cells.obj", {}, cells);
+    return testing::text_of(folder / "cells.obj");
+  };
+  const std::string own = written(nullptr);
+  EXPECT_EQ(written(&made), own);
+  for (Vector<3>& corner : made.cells.corners) corner *= 2;  // tells them from others
+  EXPECT_NE(written(&made), own);
+}
+
 }  // namespace cells_test
 }  // namespace bernal

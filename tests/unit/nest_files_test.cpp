@@ -85,6 +85,47 @@ TEST(NestFiles, ThatDoNotGoTogetherAreRefused) {
             std::string::npos);
 }
 
+// As in the folder itself: said before the run, and only of what would be replaced.
+TEST(NestFiles, OfAUserAreNotReplaced) {
+  const Nested scenes("{ scene = \"inner.toml\", templates = 2 }",
+                      std::string(testing::particles) + "[[output]]\nformat = \"extxyz\"\n");
+  const Scene scene = read_scene(scenes.folder / "outer.toml");
+  const Packing packing = scenes.packed();
+  const auto refusal = [&](const std::filesystem::path& folder) {
+    try {
+      check_writable(folder, scene);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::cannot_write);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const testing::Folder out;
+  const auto pebble = out / "inside/pebble";
+  std::filesystem::create_directories(pebble / "template-001");
+  std::filesystem::create_directories(pebble / "template-003");
+  for (const char* name : {"rotations.csv", "template-001/spheres.csv", "template-001/report.html",
+                           "template-001/extxyz.xyz", "template-001/nest.json", "template-002"}) {
+    std::ofstream(pebble / name) << "mine";
+    EXPECT_NE(refusal(out.path()).find((pebble / name).string() + ": is no result of bernal's"),
+              std::string::npos)
+        << name << ": " << refusal(out.path());
+    EXPECT_EQ(bytes_of_file(pebble / name), "mine");
+    std::filesystem::remove(pebble / name);
+  }
+  for (const char* name : {"notes.txt", "template-001/notes.txt", "template-003/spheres.csv"})
+    std::ofstream(pebble / name) << "mine";
+  EXPECT_EQ(refusal(out.path()), "");
+  write_packing(packing, out.path());
+  EXPECT_EQ(refusal(out.path()), "");  // an earlier result may go
+  std::ofstream(pebble / "template-001/scene.toml", std::ios::app) << "# mine\n";
+  EXPECT_NE(refusal(out.path()).find("template-001/scene.toml"), std::string::npos);
+  const testing::Folder blocked;
+  blocked.write("inside", "mine");
+  EXPECT_NE(refusal(blocked.path()).find("inside: is no result"), std::string::npos)
+      << refusal(blocked.path());
+}
+
 TEST(NestFiles, TablesOfLayersAreHeldAgainstEveryLevel) {
   // Layers inside of spheres too, and drawn ones, so that a sphere's number matters.
   const Nested scenes(
@@ -98,7 +139,8 @@ TEST(NestFiles, TablesOfLayersAreHeldAgainstEveryLevel) {
   const auto table = [&] { return layers_table_of(read_packing(nest), nest).value(); };
   EXPECT_EQ(table().fault, "");
   EXPECT_EQ(table().layers, 2U * (10 + 2 * 20));
-  Certificate certificate{.certified = true};
+  Certificate certificate;
+  certificate.certified = true;
   add_to(certificate, table());
   EXPECT_TRUE(certificate.certified);
   EXPECT_NE(certificate.statement.find("100 layers"), std::string::npos) << certificate.statement;

@@ -8,6 +8,7 @@
 
 #include "bernal/core/unit.hpp"
 #include "bernal/plan/plan.hpp"
+#include "bernal/report/describe.hpp"
 #include "bernal/result/certify_levels.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
@@ -242,6 +243,25 @@ TEST(Nest, BadInputIsRefusedInOneLine) {
           "\"inner.toml\" }\n")
           .find("needs a \"class\""),
       std::string::npos);
+}
+
+TEST(Nest, AContainerThatGivesWayToTheBallSaysSo) {
+  const auto said_of = [](const std::string& radius, const std::string& inside) {
+    const Nested scenes(inside, "unit = \"mm\"\n[container]\nkind = \"sphere\"\nradius = " + radius +
+                                    "\n[spheres]\npacking_fraction = 0.1\nradius = 1.5\n");
+    const Plan plan = build(read_scene(scenes.folder / "outer.toml"));
+    EXPECT_EQ(std::get<Sphere>(plan.insides[0].plan.domain).radius, 25);
+    return describe(plan);  // by explain and by pack
+  };
+  const std::string templates = "{ scene = \"inner.toml\", templates = 2 }";
+  for (const std::string& inside : {templates, std::string("{ scene = \"inner.toml\" }")})
+    EXPECT_NE(said_of("30", inside)
+                  .find("note       inside of pebble: inner.toml asks for a sphere of radius 30 mm as its "
+                        "container; 25 mm is used, the radius of the ball that it fills\n"),
+              std::string::npos)
+        << said_of("30", inside);
+  EXPECT_EQ(said_of("25", templates).find("asks for"), std::string::npos);
+  EXPECT_EQ(said_of("\"2.5 cm\"", templates).find("asks for"), std::string::npos);
 }
 
 TEST(Nest, ARunThatIsStoppedFillsWhatItHas) {

@@ -13,6 +13,13 @@ namespace bernal {
 /// The cells of a packing: by its weights where it has such, see `Packing::weights`, else by radii.
 Cells cells_of(const Packing&, const CellsOptions& = {});
 
+/// Those cells and the shape of each: what all that is written of them is made from.
+struct ShapedCells {
+  Cells cells = {};
+  std::vector<CellShape> shapes = {};
+};
+ShapedCells shaped_cells_of(const Packing&, const CellsOptions& = {});
+
 /// A format that cells are written in.
 struct CellFormat {
   std::string name;    ///< "vtu"
@@ -42,17 +49,17 @@ struct WrittenCells {
 /// not take or that are out of range, and for two dimensions where it has none.
 void require_cell_format(const CellFileOptions&, int dimension);
 
-/// Writes the cells of a packing, in the scene's unit, to `file` and for some formats to others beside it.
-/// All appear whole, or none; existing files of these names are replaced. Throws as `require_cell_format` and
-/// `cells_of`; Error{cannot_write} if a file of a result would be overwritten; Cancelled. Cost: that of
-/// `cells_of`, and about 10 µs a cell; of images about 20 ns a voxel.
+/// Writes the cells of a packing, in the scene's unit, to `file` and for some formats to others beside it:
+/// those that are `made`, by the options' `cells`, else it makes them; an image needs none. All files appear
+/// whole, or none; existing ones of these names are replaced. Throws as `require_cell_format` and `cells_of`;
+/// Error{cannot_write} if a file of a result would be overwritten; Cancelled. Cost: about 10 µs a cell, and
+/// that of `cells_of` unless they are made; of images about 20 ns a voxel.
 WrittenCells write_cells(const Packing&, const CellFileOptions&, const std::filesystem::path& file,
-                         const Monitor& monitor = {});
+                         const Monitor& monitor = {}, const ShapedCells* made = nullptr);
 
 /// Writes a table of cells as CSV: centre, radius and `CellShape` of each, in the order of the spheres.
 /// Throws Error{cannot_write} as above.
-void write_cell_table(const Packing&, const Cells&, const std::vector<CellShape>&,
-                      const std::filesystem::path& file);
+void write_cell_table(const Packing&, const ShapedCells&, const std::filesystem::path& file);
 
 /// Statistics as a JSON object: what `bernal cells --json` prints.
 std::string cell_statistics_as_json(const Packing&, const Cells&, const CellStatistics&);

@@ -1,0 +1,179 @@
+#include "meshes/tetgen.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include "bernal/core/error.hpp"
+#include "files/input_file.hpp"
+#include "files/next_line.hpp"
+#include "files/output_file.hpp"
+#include "meshes/mesh_quality.hpp"
+
+namespace bernal {
+namespace {
+
+/// Numbers as text, which are kept until there are many of them.
+class NumberFile {
+ public:
+  explicit NumberFile(const std::filesystem::path& path) : file_(path) {}
+  template <class T>
+  void add(T value, char after) {
+    std::array<char, 32> digits;
+    text_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+    text_ += after;
+    if (text_.size() < most) return;
+    file_.append(text_);
+    text_.clear();
+  }
+  void close() {
+    file_.append(text_);
+    file_.close();
+  }
+
+ private:
+  static constexpr std::size_t most = 1 << 16;
+  OutputFile file_;
+  std::string text_;
+};
+
+[[noreturn]] void refuse(const std::string& why, const std::filesystem::path& file) {
+  throw Error(ErrorCode::bad_mesh, why, {file.string()});
+}
+
+/// The rows of a file of TetGen's: numbers between blanks, comments after #.
+class Rows {
+ public:
+  explicit Rows(const std::filesystem::path& path) : path_(path), in_(path) {}
+  /// The next row with numbers in it, as a place to take them from.
+  void next() {
+    do {
+      if (next_line(in_, line_) != NextLine::read) refuse("TetGen's file ends too early", path_);
+      at_ = line_.data();
+      skip_blanks();
+    } while (at_ == line_.data() + line_.size() || *at_ == '#');
+  }
+  template <class T>
+  T number() {
+    skip_blanks();
+    T value{};
+    const auto [after, wrong] = std::from_chars(at_, line_.data() + line_.size(), value);
+    if (wrong != std::errc{}) refuse("TetGen's file has something else than a number", path_);
+    at_ = after;
+    return value;
+  }
+
+ private:
+  void skip_blanks() {
+    while (at_ != line_.data() + line_.size() && (*at_ == ' ' || *at_ == '\t' || *at_ == '\r')) ++at_;
+  }
+  std::filesystem::path path_;
+  InputFile in_;
+  std::string line_;
+  const char* at_ = nullptr;
+};
+
+void read_vertices(const ConformingSurface& surface, const std::filesystem::path& file, VolumeMesh& mesh) {
+  constexpr double digits = 1e-12;  // it writes sixteen
+  Rows rows(file);
+  rows.next();
+  const auto count = rows.number<std::size_t>();
+  if (count < surface.vertices.size()) refuse("TetGen lost vertices of the surface", file);
+  mesh.vertices.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    rows.next();
+    rows.number<std::size_t>();
+    Vector<3> place;
+    for (int k = 0; k < 3; ++k) place[k] = rows.number<double>();
+    if (i < surface.vertices.size()) {
+      const Vector<3>& wanted = surface.vertices[i];
+      if ((place - wanted).cwiseAbs().maxCoeff() > digits * wanted.cwiseAbs().maxCoeff())
+        refuse("TetGen moved a vertex of the surface", file);
+      place = wanted;
+    }
+    mesh.vertices.push_back(place);
+  }
+}
+
+void read_tetrahedra(const std::filesystem::path& file, VolumeMesh& mesh) {
+  Rows rows(file);
+  rows.next();
+  const auto count = rows.number<std::size_t>();
+  rows.number<int>();
+  const bool has_regions = rows.number<int>() > 0;
+  mesh.tetrahedra.reserve(count);
+  mesh.region.reserve(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    rows.next();
+    rows.number<std::size_t>();
+    TetrahedronCorners c{};
+    for (std::uint32_t& corner : c) {
+      corner = rows.number<std::uint32_t>();
+      if (corner >= mesh.vertices.size()) refuse("TetGen names a vertex that it did not write", file);
+    }
+    if (sicn(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]) < 0)
+      std::swap(c[2], c[3]);
+    // Regions are numbered from 1 in its files: 0 is what no seed is in.
+    const double region = has_regions ? rows.number<double>() : 1;
+    if (!(region >= 1 && region <= static_cast<double>(mesh.regions.size())))
+      refuse("TetGen made tetrahedra where no region is: is the surface closed?", file);
+    mesh.tetrahedra.push_back(c);
+    mesh.region.push_back(static_cast<std::uint32_t>(region) - 1);
+  }
+}
+
+}  // namespace
+
+void write_for_tetgen(const ConformingSurface& surface, const std::vector<Vector<3>>& holes,
+                      const std::filesystem::path& folder) {
+  const auto add_place = [](NumberFile& file, const Vector<3>& p, char after) {
+    file.add(p[0], ' ');
+    file.add(p[1], ' ');
+    file.add(p[2], after);
+  };
+  NumberFile nodes(folder / "packing.node");
+  nodes.add(surface.vertices.size(), ' ');
+  for (const int count : {3, 0}) nodes.add(count, ' ');
+  nodes.add(0, '\n');
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+    nodes.add(i, ' ');
+    add_place(nodes, surface.vertices[i], '\n');
+  }
+  nodes.close();
+  NumberFile faces(folder / "packing.smesh");
+  for (const int count : {0, 3, 0}) faces.add(count, ' ');
+  faces.add(0, '\n');
+  faces.add(surface.triangles.size(), ' ');
+  faces.add(0, '\n');
+  for (const FaceCorners& triangle : surface.triangles) {
+    faces.add(3, ' ');
+    for (std::size_t k = 0; k < 3; ++k) faces.add(triangle[k], k == 2 ? '\n' : ' ');
+  }
+  faces.add(holes.size(), '\n');
+  for (std::size_t i = 0; i < holes.size(); ++i) {
+    faces.add(i, ' ');
+    add_place(faces, holes[i], '\n');
+  }
+  faces.add(surface.regions.size(), '\n');
+  for (std::size_t i = 0; i < surface.regions.size(); ++i) {
+    faces.add(i, ' ');
+    add_place(faces, surface.regions[i].seed, ' ');
+    faces.add(i + 1, '\n');
+  }
+  faces.close();
+}
+
+VolumeMesh read_from_tetgen(const ConformingSurface& surface, const std::filesystem::path& folder) {
+  VolumeMesh mesh;
+  mesh.triangles = surface.triangles;
+  mesh.patch = surface.patch;
+  mesh.patches = surface.patches;
+  mesh.regions = surface.regions;
+  mesh.periodic = surface.periodic;
+  read_vertices(surface, folder / "packing.1.node", mesh);
+  read_tetrahedra(folder / "packing.1.ele", mesh);
+  return mesh;
+}
+
+}  // namespace bernal

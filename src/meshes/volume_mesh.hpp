@@ -1,0 +1,49 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "meshes/conforming_surface.hpp"
+
+namespace bernal {
+
+/// The four corners of a tetrahedron: (b - a) · ((c - a) × (d - a)) is positive.
+using TetrahedronCorners = std::array<std::uint32_t, 4>;
+
+/// Pairs of corners of a tetrahedron, in the order of its edges, which is that of VTK and Abaqus.
+inline constexpr std::array<std::array<int, 2>, 6> edges_of_tetrahedron = {
+    {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+/// Its faces, outwards; the k-th is opposite corner k.
+inline constexpr std::array<std::array<int, 3>, 4> faces_of_tetrahedron = {
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// Tetrahedra that fill the regions of a surface. Its vertices are the first ones, in their order, and its
+/// triangles are faces of tetrahedra.
+struct VolumeMesh {
+  std::vector<Vector<3>> vertices;
+  std::vector<TetrahedronCorners> tetrahedra;
+  std::vector<std::uint32_t> region;  ///< of each tetrahedron
+  std::vector<FaceCorners> triangles;
+  std::vector<std::uint32_t> patch;  ///< of each triangle
+  std::vector<SurfacePatch> patches;
+  std::vector<MeshRegion> regions;
+  /// Vertices of opposite ends of periods, (lower, upper) by axis.
+  std::array<std::vector<std::array<std::uint32_t, 2>>, 3> periodic;
+  /// Second order: the middles of edges, as numbers among the nodes, which are the vertices and then these.
+  std::vector<Vector<3>> middles = {};
+  std::vector<std::array<std::uint32_t, 6>> middles_of_tetrahedron = {};
+  std::vector<std::array<std::uint32_t, 3>> middles_of_triangle = {};  ///< after corners 0, 1, 2
+
+  bool is_curved() const { return !middles_of_tetrahedron.empty(); }
+  std::size_t node_count() const { return vertices.size() + middles.size(); }
+  const Vector<3>& node(std::size_t i) const {
+    return i < vertices.size() ? vertices[i] : middles[i - vertices.size()];
+  }
+};
+
+/// Volume of every region, as the sum of its tetrahedra with straight edges.
+std::vector<double> volumes_of_regions(const VolumeMesh&);
+/// The same from triangles alone, by the divergence theorem.
+std::vector<double> volumes_between(const ConformingSurface&);
+
+}  // namespace bernal
