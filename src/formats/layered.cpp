@@ -6,6 +6,7 @@
 
 #include "bernal/scene/sphere_classes.hpp"
 #include "bernal/scene/sphere_layers.hpp"
+#include "scene/sphere_matter.hpp"
 
 namespace bernal {
 
@@ -36,29 +37,25 @@ BallsOfLayer balls_of_layer(const Exported& file, const std::string& name) {
 LayeredSpheres layered(const Exported& file) {
   const Packing& packing = file.packing;
   const SphereLayers layers = layers_of(packing);
+  const std::vector<std::vector<SphereMatter>> matter = matter_by_class(packing.scene);
   const std::vector<SphereClass> classes = classes_of(packing.scene);
   LayeredSpheres made;
   made.materials = materials_of(packing.scene);
-  const auto material_at = [&](const std::string& name) {
-    return static_cast<std::uint32_t>(std::ranges::find(made.materials, name) - made.materials.begin());
-  };
   const auto is_twice = [&](const std::string& name) {
-    return 1 < std::ranges::count_if(layers.of_class, [&](const std::vector<Layer>& of) {
-             return std::ranges::find(of, name, &Layer::name) != of.end();
+    return 1 < std::ranges::count_if(matter, [&](const std::vector<SphereMatter>& of_class) {
+             return std::ranges::any_of(
+                 of_class, [&](const SphereMatter& of) { return of.is_layer && of.name == name; });
            });
   };
   std::vector<std::uint32_t> first_kind;  // of each class
-  const std::size_t n = std::max<std::size_t>(1, classes.size());
-  for (std::size_t c = 0; c < n; ++c) {
+  for (std::size_t c = 0; c < matter.size(); ++c) {
     first_kind.push_back(static_cast<std::uint32_t>(made.kinds.size()));
-    const std::string of_class = classes.empty() ? "spheres" : classes[c].name;
-    if (c >= layers.of_class.size() || layers.of_class[c].empty()) {
-      made.kinds.push_back({of_class, material_at(classes.empty() ? of_class : material_of(classes[c]))});
-      continue;
+    for (const SphereMatter& of : matter[c]) {
+      const auto material = std::ranges::find(made.materials, of.material) - made.materials.begin();
+      made.kinds.push_back(
+          {of.is_layer && is_twice(of.name) ? fmt::format("{} of {}", of.name, classes[c].name) : of.name,
+           static_cast<std::uint32_t>(material)});
     }
-    for (const Layer& layer : layers.of_class[c])
-      made.kinds.push_back({is_twice(layer.name) ? fmt::format("{} of {}", layer.name, of_class) : layer.name,
-                            material_at(material_of(layer))});
   }
   made.first.push_back(0);
   for (std::size_t i = 0; i < file.size(); ++i) {

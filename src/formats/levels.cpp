@@ -10,8 +10,8 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
-#include "bernal/scene/sphere_classes.hpp"
 #include "bernal/scene/sphere_layers.hpp"
+#include "scene/sphere_matter.hpp"
 
 namespace bernal {
 namespace {
@@ -101,17 +101,6 @@ class Builder {
   }
 
  private:
-  /// Of spheres that are not told apart, or hold no layers.
-  std::uint32_t matter_of(const Scene& scene, const std::vector<SphereClass>& classes, std::uint32_t c) {
-    if (c < classes.size()) {
-      const SphereClass& of = classes[c];
-      const std::string& name = !of.material.empty() ? of.material : of.name;
-      return materials_.of(name.empty() ? "spheres" : name,
-                           of.material_density ? of.material_density : scene.material_density);
-    }
-    return materials_.of(scene.material.empty() ? "spheres" : scene.material, scene.material_density);
-  }
-
   std::uint32_t content_of(SphereContent content) {
     const auto next = static_cast<std::uint32_t>(model_.contents.size());
     const auto [known, is_new] = known_.try_emplace(std::move(content), next);
@@ -141,15 +130,16 @@ class Builder {
   /// Says what each sphere holds.
   void hold(const Packing& packing, const std::function<double(double)>& converted, Level& level) {
     const SphereLayers layers = layers_of(packing);
-    const std::vector<SphereClass> classes = classes_of(packing.scene);
     const std::size_t n = level.size();
     const auto class_of = [&](std::size_t i) {
       return packing.classes.empty() ? std::uint32_t{0} : packing.classes[i];
     };
-    std::vector<std::vector<std::uint32_t>> layer_materials(layers.of_class.size());
-    for (std::size_t c = 0; c < layers.of_class.size(); ++c)
-      for (const Layer& layer : layers.of_class[c])
-        layer_materials[c].push_back(materials_.of(material_of(layer), layer.material_density));
+    std::vector<std::vector<std::uint32_t>> materials;  // of each class
+    for (const std::vector<SphereMatter>& of_class : matter_by_class(packing.scene)) {
+      materials.emplace_back();
+      for (const SphereMatter& of : of_class)
+        materials.back().push_back(materials_.of(of.material, of.density));
+    }
 
     std::vector<SphereContent> held(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -157,7 +147,7 @@ class Builder {
       const std::span<const double> outer = layers.empty() ? std::span<const double>() : layers.of(i);
       const double r = level.spheres.r[i];
       if (outer.empty()) {
-        held[i] = {.outer = {r}, .materials = {matter_of(packing.scene, classes, c)}};
+        held[i] = {.outer = {r}, .materials = materials[c]};
         continue;
       }
       // Where a treatment of contacts has shrunk a sphere, its layers have shrunk with it.
@@ -165,7 +155,7 @@ class Builder {
       for (const double radius : outer)
         held[i].outer.push_back(whole == r ? converted(radius) : converted(radius) * (r / whole));
       held[i].outer.back() = r;
-      held[i].materials = layer_materials[c];
+      held[i].materials = materials[c];
     }
     fill(packing, level, held);
     level.contents.resize(n);

@@ -259,21 +259,18 @@ FileContents read_mcnp(const Reading& reading) {
   });
 }
 
+constexpr LevelFormat of_mcnp = {
+    .name = "mcnp",
+    .file = "mcnp.inp",
+    .writes = "MCNP: cells and macrobodies (SPH, RPP, RCC, TRC) of one level with its layers",
+    .reads = "MCNP inputs that bernal wrote",
+    .begins = "bernal ",
+    .says = "\nc lengths in cm;",
+    .write = write_mcnp,
+    .read = read_mcnp};
+
 }  // namespace
 
-Format mcnp_format() {
-  return {
-      .name = "mcnp",
-      .writes = "MCNP: cells and macrobodies (SPH, RPP, RCC, TRC) of one level with its layers",
-      .file = "mcnp.inp",
-      .unit = Unit::cm,
-      .write_with_note = write_mcnp,
-      .reads = "MCNP inputs that bernal wrote",
-      .unit_from = "cm",
-      .options = {"level"},
-      .recognises =
-          [](const FileBeginning& file) { return file.begins("bernal ") && file.has("\nc lengths in cm;"); },
-      .read = read_mcnp};
-}
+Format mcnp_format() { return format_of_levels<of_mcnp>(); }
 
 }  // namespace bernal

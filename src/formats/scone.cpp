@@ -258,20 +258,17 @@ FileContents read_scone(const Reading& reading) {
   });
 }
 
+constexpr LevelFormat of_scone = {.name = "scone",
+                                  .file = "scone",
+                                  .writes = "SCONE: geometry of all levels, and the names of the materials",
+                                  .reads = "SCONE inputs that bernal wrote",
+                                  .begins = "! bernal ",
+                                  .says = "; for SCONE, ",
+                                  .write = write_scone,
+                                  .read = read_scone};
+
 }  // namespace
 
-Format scone_format() {
-  return {.name = "scone",
-          .writes = "SCONE: geometry of all levels, and the names of the materials",
-          .file = "scone",
-          .unit = Unit::cm,
-          .write_with_note = write_scone,
-          .reads = "SCONE inputs that bernal wrote",
-          .unit_from = "cm",
-          .options = {"level"},
-          .recognises =
-              [](const FileBeginning& file) { return file.begins("! bernal ") && file.has("; for SCONE, "); },
-          .read = read_scone};
-}
+Format scone_format() { return format_of_levels<of_scone>(); }
 
 }  // namespace bernal

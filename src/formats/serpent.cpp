@@ -190,22 +190,19 @@ FileContents read_serpent(const Reading& reading) {
   return contents;
 }
 
+constexpr LevelFormat of_serpent = {
+    .name = "serpent",
+    .file = "serpent.inp",
+    .writes = "Serpent 2: an input with universes and walls, and the spheres of each level (.pbed)",
+    .reads = "Serpent inputs that bernal wrote, with the .pbed files beside them",
+    .begins = "% bernal ",
+    .says = "; for Serpent 2, ",
+    .write = write_serpent,
+    .beside = level_files,
+    .read = read_serpent};
+
 }  // namespace
 
-Format serpent_format() {
-  return {
-      .name = "serpent",
-      .writes = "Serpent 2: an input with universes and walls, and the spheres of each level (.pbed)",
-      .file = "serpent.inp",
-      .unit = Unit::cm,
-      .write_with_note = write_serpent,
-      .beside = level_files,
-      .reads = "Serpent inputs that bernal wrote, with the .pbed files beside them",
-      .unit_from = "cm",
-      .options = {"level"},
-      .recognises =
-          [](const FileBeginning& file) { return file.begins("% bernal ") && file.has("; for Serpent 2, "); },
-      .read = read_serpent};
-}
+Format serpent_format() { return format_of_levels<of_serpent>(); }
 
 }  // namespace bernal

@@ -13,6 +13,7 @@
 #include "bernal/scene/sphere_layers.hpp"
 #include "scene/layers_of_scene.hpp"
 #include "scene/size_kinds.hpp"
+#include "scene/sphere_matter.hpp"
 
 namespace bernal {
 namespace {
@@ -97,10 +98,35 @@ std::vector<double> shares_of(const std::vector<Layer>& layers, const std::vecto
   return shares;
 }
 
-void add(std::vector<LayerShare>& all, const std::string& of_class, const std::vector<Layer>& layers,
-         const std::vector<double>& shares) {
+/// Of the volume of all spheres, what each layer takes, or the spheres of a class without any: class by class
+/// as in `matter_by_class`.
+std::vector<std::vector<double>> matter_shares(const Scene& scene) {
+  if (!scene.zones.empty())
+    throw Error(ErrorCode::bad_scene, "the layers of zones follow from what is packed: see bernal measure",
+                scene.zones.front().locations.whole);
+  const Location& where = scene.locations.of("layers");
+  std::vector<std::vector<Layer>> layers = layers_by_class(scene);
+  layers.resize(matter_by_class(scene).size());
+  const auto* sizes = std::get_if<Classes>(&scene.sizes);
+  if (!sizes || layers.size() != sizes->values.size()) {
+    if (layers.front().empty()) return {{1.0}};
+    return {shares_of(layers.front(), sizes_of(*radii_of(scene)), where)};
+  }
+  const double unit = scene.scale * (scene.sizes_are_diameters ? 0.5 : 1);
+  std::vector<double> volumes = shares_of_one_density(*sizes);
+  for (std::size_t k = 0; k < volumes.size(); ++k)
+    if (sizes->basis == Basis::number) volumes[k] *= std::pow(sizes->values[k], 3);
+  const double sum = std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  std::vector<std::vector<double>> all;
   for (std::size_t k = 0; k < layers.size(); ++k)
-    all.push_back({of_class, layers[k].name, material_of(layers[k]), shares[k]});
+    all.push_back(layers[k].empty()
+                      ? std::vector{volumes[k] / sum}
+                      : shares_of(layers[k], {{unit * sizes->values[k], volumes[k] / sum}}, where));
+  return all;
+}
+
+double cubic_metres_of(const Plan& plan) {
+  return plan.expected_packing_fraction * volume_of(plan.domain) * std::pow(metres_per(plan.scene.unit), 3);
 }
 
 }  // namespace
@@ -108,30 +134,43 @@ void add(std::vector<LayerShare>& all, const std::string& of_class, const std::v
 std::vector<LayerShare> layer_shares(const Scene& scene) {
   std::vector<LayerShare> all;
   if (!has_layers(scene)) return all;
-  if (!scene.zones.empty())
-    throw Error(ErrorCode::bad_scene, "the layers of zones follow from what is packed: see bernal measure",
-                scene.zones.front().locations.whole);
-  const Location& where = scene.locations.of("layers");
-  const std::vector<std::vector<Layer>> layers = layers_by_class(scene);
+  const std::vector<std::vector<double>> shares = matter_shares(scene);
+  const std::vector<std::vector<SphereMatter>> matter = matter_by_class(scene);
   const std::vector<SphereClass> classes = classes_of(scene);
-  const auto name_of_class = [&](std::size_t k) {
-    return k < classes.size() ? classes[k].name : std::string();
-  };
-  const auto* sizes = std::get_if<Classes>(&scene.sizes);
-  if (!sizes || layers.size() != sizes->values.size()) {
-    add(all, name_of_class(0), layers.front(), shares_of(layers.front(), sizes_of(*radii_of(scene)), where));
-    return all;
-  }
-  const double unit = scene.scale * (scene.sizes_are_diameters ? 0.5 : 1);
-  std::vector<double> volumes = shares_of_one_density(*sizes);
-  for (std::size_t k = 0; k < volumes.size(); ++k)
-    if (sizes->basis == Basis::number) volumes[k] *= std::pow(sizes->values[k], 3);
-  const double sum = std::accumulate(volumes.begin(), volumes.end(), 0.0);
-  for (std::size_t k = 0; k < layers.size(); ++k)
-    if (!layers[k].empty())
-      add(all, name_of_class(k), layers[k],
-          shares_of(layers[k], {{unit * sizes->values[k], volumes[k] / sum}}, where));
+  for (std::size_t c = 0; c < matter.size(); ++c)
+    for (std::size_t k = 0; k < matter[c].size(); ++k)
+      if (matter[c][k].is_layer)
+        all.push_back({classes[c].name, matter[c][k].name, matter[c][k].material, shares[c][k]});
   return all;
+}
+
+std::optional<double> expected_mass(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  if (scene.dimension() != 3 || !scene.zones.empty()) return std::nullopt;
+  const double volume = cubic_metres_of(plan);
+  if (has_layers(scene) && scene.material_density) return *scene.material_density * volume;
+  std::vector<std::vector<double>> volumes;
+  try {
+    volumes = matter_shares(scene);
+  } catch (const Error&) {  // a size that is hardly ever drawn has no room for its layers
+    return std::nullopt;
+  }
+  for (std::vector<double>& of_class : volumes)
+    for (double& of : of_class) of *= volume;
+  double mass = 0;
+  for (const PlannedInside& inside : plan.insides) {
+    const std::optional<double> held = expected_mass(inside.plan);
+    if (!held) return std::nullopt;
+    mass += inside.filled * *held;
+    volumes[inside.of_class][inside.layer] -= inside.filled * cubic_metres_of(inside.plan);
+  }
+  const std::vector<std::vector<SphereMatter>> matter = matter_by_class(scene);
+  for (std::size_t c = 0; c < matter.size(); ++c)
+    for (std::size_t k = 0; k < matter[c].size(); ++k) {
+      if (!matter[c][k].density) return std::nullopt;
+      mass += *matter[c][k].density * volumes[c][k];
+    }
+  return mass;
 }
 
 std::vector<LayerShare> by_material(const std::vector<LayerShare>& layers) {

@@ -138,10 +138,23 @@ std::string hint_of_ball(const PlanOfBall& of, const Inside& inside, bool differ
       unit, differ ? ", of each sphere its own" : "");
 }
 
+/// A mass counts spheres by the density of their material, which is not all that these are made of.
+void require_no_mass(const Scene& scene, const FilledClass& of, const Inside& inside) {
+  const Target& target = scene.target;
+  if (!layers_in(scene, of.of_class).empty() || !(target.mass_counted || target.bulk_density_asked)) return;
+  throw Error(
+      ErrorCode::bad_scene,
+      fmt::format("\"{}\" is of solid spheres, and those of {} are filled by others: give a \"count\" or a "
+                  "\"packing_fraction\" in its place, and explain says what they weigh",
+                  target.mass_counted ? "mass" : "bulk_density", of.name),
+      inside.locations.of("scene"));
+}
+
 PlannedInside planned(const Plan& whole, const Inside& inside, const ScenesAround& around) {
   const Scene& scene = whole.scene;
   require_no_circle(inside, around);
   const FilledClass of = filled_class(scene, inside);
+  require_no_mass(scene, of, inside);
   const RadiiOfClass radii = radii_of_class(whole, of.of_class);
   PlannedInside made{.of_class = of.of_class,
                      .layer = of.layer,

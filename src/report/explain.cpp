@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/plan/layer_shares.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "report/size_summary.hpp"
@@ -94,10 +95,12 @@ std::string explain(const Plan& plan) {
         scene.target.bed.top == BedTarget::Top::heap ? "tip" : "surface", bed->height, name_of(scene.unit));
   text += fmt::format("expected   about {:.3g} spheres, packing fraction {:.3f}\n", plan.expected_count,
                       plan.expected_packing_fraction);
-  if (!plan.insides.empty())
+  if (!plan.insides.empty()) {
+    const std::optional<double> mass = expected_mass(plan);
     text += fmt::format(
-        "           with what lies inside of them about {:.4g} spheres, which stand for themselves\n",
-        expected_count_of_all_levels(plan));
+        "           with what lies inside of them about {:.4g} spheres, which stand for themselves{}\n",
+        expected_count_of_all_levels(plan), mass ? fmt::format(", and {:.4g} kg", *mass) : std::string());
+  }
   text += fmt::format("           about {} to pack them on one core, {} of memory\n\n",
                       duration_in_words(plan.expected_seconds), bytes_in_words(plan.expected_memory_bytes));
 

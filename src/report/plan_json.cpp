@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bernal/core/text.hpp"
+#include "bernal/plan/layer_shares.hpp"
 #include "bernal/report/json.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "report/describe.hpp"
@@ -67,6 +68,7 @@ std::string plan_as_json(const Plan& plan) {
     percentiles.push_back({{"share", share}, {"by_number", by_number}, {"by_volume", by_volume}});
   for (const auto& [name, share, given, fitted] : summary.fit)
     law.push_back({{"name", name}, {"share", share}, {"given", given}, {"fitted", fitted}});
+  const std::optional<double> mass = plan.insides.empty() ? std::nullopt : expected_mass(plan);
   const ordered_json json = {
       {"unit", name_of(plan.scene.unit)},
       {"container", container},
@@ -86,6 +88,7 @@ std::string plan_as_json(const Plan& plan) {
         {"seconds", plan.expected_seconds},
         {"memory_bytes", plan.expected_memory_bytes},
         {"count_of_all_levels", expected_count_of_all_levels(plan)},
+        {"mass", mass ? ordered_json(*mass) : ordered_json()},
         {"inside", insides_of(plan)}}},
       {"caution", plan.caution.empty() ? ordered_json() : ordered_json(plan.caution)},
       {"notes", plan.hints},

@@ -106,11 +106,13 @@ std::optional<LayersTable> layers_table_of(const Packing& packing, const std::fi
 }
 
 void add_to(Certificate& certificate, const LayersTable& table) {
+  std::string& statement = certificate.statement;
   if (table.fault.empty())
-    certificate.statement += fmt::format(" {} has the {} layers of the scene and the spheres.",
-                                         layers_as_text, grouped(table.layers));
+    statement += fmt::format(" {} has the {} layers of the scene and the spheres.", layers_as_text,
+                             grouped(table.layers));
   else
-    certificate.statement += fmt::format(" Not certified: {}.", table.fault);
+    statement =
+        fmt::format("{}Not certified: {}.", certificate.certified ? "" : statement + " ", table.fault);
   certificate.certified = certificate.certified && table.fault.empty();
 }
 

@@ -81,7 +81,7 @@ class Filling {
     tell(0, 0);
     const auto work = [&](const std::function<void(const Progress&)>& of_one) {
       try {
-        for (std::size_t t; !options_.monitor.stop() && (t = next++) < packings; ++ended)
+        for (std::size_t t; (t = next++) < packings && !options_.monitor.stop(); ++ended)
           pack_one(t, threads > 1 ? 1 : packing_.threads, of_one);
       } catch (...) {
         const std::lock_guard lock(turn);
@@ -218,7 +218,15 @@ double share_before(const Plan& plan, std::size_t k) {
 
 }  // namespace
 
-Packing run_with_insides(const Plan& plan, const RunOptions& options) {
+Packing run_with_insides(const Plan& plan, const RunOptions& asked) {
+  std::atomic<bool> stopped = false;  // what said stop once is not asked again, by any packing
+  RunOptions options = asked;
+  if (asked.monitor.cancelled) {
+    options.monitor.cancelled = [&] {
+      if (!stopped && asked.monitor.cancelled()) stopped = true;
+      return stopped.load();
+    };
+  }
   RunOptions of_spheres = options;
   const double share = share_before(plan, 0);
   of_spheres.monitor.on_progress = [&](Progress progress) {

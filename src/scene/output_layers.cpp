@@ -3,31 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "bernal/scene/sphere_classes.hpp"
 #include "bernal/scene/sphere_layers.hpp"
 #include "scene/layers_of_scene.hpp"
 #include "scene/output_table.hpp"
+#include "scene/sphere_matter.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {
-
-std::vector<std::string> materials_of(const Scene& scene) {
-  std::vector<std::string> materials;
-  const auto add = [&](const std::string& name) {
-    if (std::ranges::find(materials, name) == materials.end()) materials.push_back(name);
-  };
-  const std::vector<SphereClass> classes = classes_of(scene);
-  const std::vector<std::vector<Layer>> layers = layers_by_class(scene);
-  for (std::size_t c = 0; c < classes.size(); ++c) {
-    if (layers.empty() || layers[c].empty()) {
-      add(material_of(classes[c]));
-      continue;
-    }
-    for (const Layer& layer : layers[c]) add(material_of(layer));
-  }
-  if (materials.empty()) add("spheres");
-  return materials;
-}
 
 static void require_layer(const Output& output, const Scene& scene, const schema::Section& section) {
   if (output.surface != SurfaceChoice::spheres)
@@ -62,7 +44,7 @@ void require_layers_of_output(const Output& output, const Scene& scene) {
   std::size_t count = materials.size();
   if (output.values == VoxelValues::layers) {
     count = 0;
-    for (const std::vector<Layer>& of : layers_by_class(scene)) count += std::max<std::size_t>(1, of.size());
+    for (const std::vector<SphereMatter>& of_class : matter_by_class(scene)) count += of_class.size();
   }
   if (counts && count > most)
     section.fail("values", fmt::format("there are {} {}, and a byte tells no more than {} apart", count,

@@ -16,8 +16,8 @@ std::string_view name_of(Outcome outcome) {
 
 namespace {
 
-/// The mean density of the spheres by volume, where all their layers have one.
-std::optional<double> density_of_layers(const Packing& packing) {
+/// The mean density of the spheres by volume, where all that they are made of have one.
+std::optional<double> density_of_matter(const Packing& packing) {
   double mass = 0, volume = 0;
   for (const MaterialAmount& material : layer_amounts(packing).materials) {
     if (!material.mass) return std::nullopt;
@@ -30,7 +30,8 @@ std::optional<double> density_of_layers(const Packing& packing) {
 
 /// The mean density of the spheres by volume.
 std::optional<double> density_of(const Packing& packing) {
-  if (has_layers(packing.scene) && !packing.scene.material_density) return density_of_layers(packing);
+  const bool layers = has_layers(packing.scene);
+  if (layers ? !packing.scene.material_density : !packing.inside.empty()) return density_of_matter(packing);
   if (packing.scene.zones.empty()) return packing.scene.material_density;
   const std::vector<SphereClass> classes = classes_of(packing.scene);
   double mass = 0, volume = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What stands around the module: stubs, docstrings, the example notebook."""
+"""What stands around the module: stubs, docstrings, the example notebook, the version."""
 
 import ast
 import importlib.util
@@ -12,7 +12,7 @@ import sys
 import unittest
 from pathlib import Path
 
-from support import DATA, InFolder
+from support import COMMAND, DATA, InFolder, small
 
 import bernal
 from bernal import _classes
@@ -114,6 +114,14 @@ class Notebook(InFolder):
         self.assertIn("<pre>", shown[1]._repr_html_())
         self.assertTrue(Path("first_packing/report.html").exists())
         self.assertIn("atoms", Path("first_packing.data").read_text()[:2000])
+
+
+class Version(unittest.TestCase):
+    def test_it_is_that_of_the_command(self):
+        said = subprocess.run([COMMAND, "--version"], capture_output=True, text=True, check=True).stdout
+        program = f"{bernal.__version__} (packings {bernal.packings_number}, commit {bernal.commit})"
+        self.assertEqual(said, f"bernal {program}\n")
+        self.assertEqual(bernal.pack(small(count=5)).program, program)
 
 
 if __name__ == "__main__":

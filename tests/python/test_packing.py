@@ -390,13 +390,5 @@ class Sizes(InFolder):
         self.refuses(bernal.InputError, "", lambda: bernal.design.maximise([1]))
 
 
-class Version(unittest.TestCase):
-    def test_it_is_that_of_the_command(self):
-        said = subprocess.run([COMMAND, "--version"], capture_output=True, text=True, check=True).stdout
-        program = f"{bernal.__version__} (packings {bernal.packings_number}, commit {bernal.commit})"
-        self.assertEqual(said, f"bernal {program}\n")
-        self.assertEqual(bernal.pack(small(count=5)).program, program)
-
-
 if __name__ == "__main__":
     unittest.main()

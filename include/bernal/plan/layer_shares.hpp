@@ -1,10 +1,13 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bernal/scene/scene.hpp"
 
 namespace bernal {
+
+struct Plan;
 
 /// What a layer is expected to take up of the spheres of a scene, before any are packed.
 struct LayerShare {
@@ -27,5 +30,11 @@ std::vector<LayerShare> layer_shares(const Scene&);
 
 /// The same by material, in the order in which they come first; `name` and `sphere_class` are empty.
 std::vector<LayerShare> by_material(const std::vector<LayerShare>&);
+
+/// What the spheres of a plan are expected to weigh, in kg, with what lies inside of them: a layer that is
+/// filled by its spheres and by what of its material is left around them. Nothing where a density is not
+/// known, where zones have sizes of their own or layers do not fit all sizes, and in other dimensions than
+/// three. Cost: that of `layer_shares`, on each level.
+std::optional<double> expected_mass(const Plan&);
 
 }  // namespace bernal
