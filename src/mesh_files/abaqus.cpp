@@ -19,7 +19,7 @@ void add_set(TextFile& out, const std::vector<std::uint32_t>& numbers) {
     out.add(numbers[i] + 1, i % in_line == in_line - 1 || i + 1 == numbers.size() ? "\n" : ", ");
 }
 
-void add_volumes(const MeshFile& file, TextFile& out) {
+void add_volumes(const MeshToWrite& file, TextFile& out) {
   const VolumeMesh& mesh = file.mesh;
   const auto tetrahedra = by_group(mesh.tetrahedra.size(), file.groups.volumes.size(),
                                    [&](std::size_t t) { return file.groups.volume_of(mesh, t); });
@@ -35,7 +35,7 @@ void add_volumes(const MeshFile& file, TextFile& out) {
   }
 }
 
-void add_surfaces(const MeshFile& file, TextFile& out) {
+void add_surfaces(const MeshToWrite& file, TextFile& out) {
   const VolumeMesh& mesh = file.mesh;
   const auto sides = sides_of_triangles(mesh);
   const auto triangles = by_group(mesh.triangles.size(), file.groups.surfaces.size(),
@@ -78,22 +78,23 @@ std::vector<std::array<std::uint32_t, 2>> images_of(const VolumeMesh& mesh) {
   return images;
 }
 
+constexpr std::string_view equations_ending = "_periodic.inc";
+
 /// Equations for what a user includes: equal temperatures at opposite ends.
-bool write_equations(const MeshFile& file, const std::string& name, StagedFolder& staged) {
+void write_equations(const MeshToWrite& file, StagedFolder& staged) {
   constexpr int temperature = 11;
   const auto images = images_of(file.mesh);
-  TextFile out(staged.add(name));
-  out.add("** ", file.title, "\n** Equal temperatures at opposite ends of periods; for displacements take 1, 2 "
-                             "and 3 in place of 11.\n");
+  TextFile out(staged.add(file.name.stem().string() + std::string(equations_ending)));
+  out.add("** ", file.title,
+          "\n** Equal temperatures at opposite ends of periods; for displacements take 1, 2 "
+          "and 3 in place of 11.\n");
   for (const auto& [image, first] : images)
-    out.add("*EQUATION\n2\n", image + 1, ", ", temperature, ", 1., ", first + 1, ", ", temperature, ", -1.\n");
+    out.add("*EQUATION\n2\n", image + 1, ", ", temperature, ", 1., ", first + 1, ", ", temperature,
+            ", -1.\n");
   out.close();
-  return !images.empty();
 }
 
-std::string name_of_equations(const std::filesystem::path& name) { return name.stem().string() + "_periodic.inc"; }
-
-std::string write_mesh_for_abaqus(const MeshFile& file, StagedFolder& staged) {
+std::string write_mesh_for_abaqus(const MeshToWrite& file, StagedFolder& staged) {
   const VolumeMesh& mesh = file.mesh;
   TextFile out(staged.add(file.name.string()));
   out.add("*HEADING\n", file.title, "; lengths in ", file.unit, "\n*NODE, NSET=all\n");
@@ -104,12 +105,13 @@ std::string write_mesh_for_abaqus(const MeshFile& file, StagedFolder& staged) {
   add_volumes(file, out);
   add_surfaces(file, out);
   out.close();
-  std::string note = fmt::format("{}: ELSET a region, NSET and SURFACE a patch",
-                                 mesh.is_curved() ? "C3D10" : "C3D4");
-  const bool is_periodic = std::ranges::any_of(mesh.periodic, [](const auto& pairs) { return !pairs.empty(); });
-  if (is_periodic && write_equations(file, name_of_equations(file.name), staged))
-    note += "; equations of periods in a file of their own, for *INCLUDE";
-  return note;
+  const std::string note =
+      fmt::format("{}: ELSET a region, NSET and SURFACE a patch", mesh.is_curved() ? "C3D10" : "C3D4");
+  const bool is_periodic =
+      std::ranges::any_of(mesh.periodic, [](const auto& pairs) { return !pairs.empty(); });
+  if (!is_periodic) return note;
+  write_equations(file, staged);
+  return note + "; equations of periods in a file of their own, for *INCLUDE";
 }
 
 }  // namespace
@@ -117,6 +119,7 @@ std::string write_mesh_for_abaqus(const MeshFile& file, StagedFolder& staged) {
 MeshWriter abaqus_of_mesh() {
   return {.format = {"abaqus", "Abaqus and CalculiX: C3D4 or C3D10, sets and surfaces, equations of periods",
                      ".inp"},
+          .beside = equations_ending,
           .write = write_mesh_for_abaqus};
 }
 

@@ -30,7 +30,7 @@ void add_extent(TextFile& out, std::size_t tag, const Extent& extent) {
 }
 
 /// One entity a group, of the same number as its physical group.
-void add_entities(const MeshFile& file, TextFile& out) {
+void add_entities(const MeshToWrite& file, TextFile& out) {
   const VolumeMesh& mesh = file.mesh;
   const MeshGroups& groups = file.groups;
   std::vector<Extent> surfaces(groups.surfaces.size()), volumes(groups.volumes.size());
@@ -77,7 +77,7 @@ void add_nodes(const VolumeMesh& mesh, TextFile& out) {
   out.add("$EndNodes\n");
 }
 
-void add_elements(const MeshFile& file, TextFile& out) {
+void add_elements(const MeshToWrite& file, TextFile& out) {
   constexpr int triangle = 2, tetrahedron = 4, triangle6 = 9, tetrahedron10 = 11;
   const VolumeMesh& mesh = file.mesh;
   const auto triangles = by_group(mesh.triangles.size(), file.groups.surfaces.size(),
@@ -111,7 +111,7 @@ void add_elements(const MeshFile& file, TextFile& out) {
   out.add("$EndElements\n");
 }
 
-void add_periodic(const MeshFile& file, TextFile& out) {
+void add_periodic(const MeshToWrite& file, TextFile& out) {
   const VolumeMesh& mesh = file.mesh;
   std::vector<std::size_t> axes;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -133,7 +133,7 @@ void add_periodic(const MeshFile& file, TextFile& out) {
   out.add("$EndPeriodic\n");
 }
 
-std::string write_mesh_for_gmsh(const MeshFile& file, StagedFolder& staged) {
+std::string write_mesh_for_gmsh(const MeshToWrite& file, StagedFolder& staged) {
   TextFile out(staged.add(file.name.string()));
   out.add("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n", file.title, "; lengths in ", file.unit,
           "\n$EndComments\n");

@@ -31,7 +31,7 @@ MeshGroups groups_of(const VolumeMesh&, const Domain&);
 std::string name_of_end(std::uint32_t face);
 
 /// What a writer is given.
-struct MeshFile {
+struct MeshToWrite {
   const VolumeMesh& mesh;
   const MeshGroups& groups;
   const std::filesystem::path& name;  ///< of the file, in the folder
@@ -43,8 +43,9 @@ struct MeshFile {
 struct MeshWriter {
   MeshFormat format;
   std::vector<std::string_view> others = {};  ///< names of files that go with it
+  std::string_view beside = {};               ///< and how that of another ends, after the stem of the file's
   /// Writes the files and returns what they hold.
-  std::string (*write)(const MeshFile&, StagedFolder&);
+  std::string (*write)(const MeshToWrite&, StagedFolder&);
 };
 
 MeshWriter gmsh_of_mesh();

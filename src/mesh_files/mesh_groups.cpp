@@ -9,11 +9,16 @@ namespace {
 std::string name_of_patch(const SurfacePatch& patch, const Domain& domain) {
   constexpr std::array<const char*, 3> of_cylinder = {"side", "floor", "lid"};
   switch (patch.kind) {
-    case SurfacePatch::Kind::sphere: return "surface_of_spheres";
-    case SurfacePatch::Kind::neck: return "necks";
-    case SurfacePatch::Kind::cut_face: return "caps";
-    case SurfacePatch::Kind::period_end: return name_of_end(patch.index);
-    case SurfacePatch::Kind::wall: break;
+    case SurfacePatch::Kind::sphere:
+      return "surface_of_spheres";
+    case SurfacePatch::Kind::neck:
+      return "necks";
+    case SurfacePatch::Kind::cut_face:
+      return "caps";
+    case SurfacePatch::Kind::period_end:
+      return name_of_end(patch.index);
+    case SurfacePatch::Kind::wall:
+      break;
   }
   return std::holds_alternative<Cylinder>(domain) ? of_cylinder.at(patch.index) : name_of_end(patch.index);
 }

@@ -96,8 +96,9 @@ std::vector<std::uint32_t> images_of(const VolumeMesh& mesh, std::size_t axis,
     std::ranges::sort(corners);
     const auto found = by_corners.find(corners);
     if (found == by_corners.end())
-      throw Error(ErrorCode::bad_mesh, fmt::format("the ends of the period along {} are not images of each other",
-                                                   std::string_view("xyz").substr(axis, 1)));
+      throw Error(ErrorCode::bad_mesh,
+                  fmt::format("the ends of the period along {} are not images of each other",
+                              std::string_view("xyz").substr(axis, 1)));
     ordered.push_back(found->second);
   }
   return ordered;
@@ -111,7 +112,8 @@ class BoundaryFaces {
                            [&](std::size_t t) { return groups.surface_of(mesh, t); });
     // Those between two regions are inner faces.
     for (auto& triangles : of_surface_)
-      std::erase_if(triangles, [&](std::uint32_t t) { return sides_[t][0].is_there() == sides_[t][1].is_there(); });
+      std::erase_if(triangles,
+                    [&](std::uint32_t t) { return sides_[t][0].is_there() == sides_[t][1].is_there(); });
   }
 
   void add() {
@@ -123,8 +125,9 @@ class BoundaryFaces {
   void add_surface(std::uint32_t surface) {
     const std::uint32_t end = end_of(mesh_, of_surface_[surface].front());
     const std::string& name = groups_.surfaces[surface];
-    PolyMesh::Patch patch{
-        .name = name, .type = name == "floor" || name == "lid" ? "patch" : "wall", .first = poly_.faces.size()};
+    PolyMesh::Patch patch{.name = name,
+                          .type = name == "floor" || name == "lid" ? "patch" : "wall",
+                          .first = poly_.faces.size()};
     std::vector<std::uint32_t> triangles = of_surface_[surface];
     if (end != none) {
       const std::size_t axis = end / 2;
@@ -139,7 +142,8 @@ class BoundaryFaces {
       }
     }
     for (std::size_t k = 0; k < triangles.size(); ++k) {
-      const TriangleSide& side = sides_[triangles[k]][0].is_there() ? sides_[triangles[k]][0] : sides_[triangles[k]][1];
+      const TriangleSide& side =
+          sides_[triangles[k]][0].is_there() ? sides_[triangles[k]][0] : sides_[triangles[k]][1];
       FaceCorners corners = face_of(mesh_, side.tetrahedron, side.face);
       if (end != none) begin_at_image(end, k, corners);
       poly_.faces.push_back(corners);

@@ -9,13 +9,13 @@
 namespace bernal {
 
 /// A mesh by its faces, as OpenFOAM has it: inner faces first, in upper-triangular order: by their owner, the
-/// cell of smaller number, which their normals point out of, and for one owner by the neighbour. Then those of
-/// each patch; the k-th faces of both ends of a period are images, with corners in opposite turns from the
+/// cell of smaller number, which their normals point out of, and for one owner by the neighbour. Then those
+/// of each patch; the k-th faces of both ends of a period are images, with corners in opposite turns from the
 /// same first one. Source: OpenFOAM User Guide, 4.1 "Mesh description".
 struct PolyMesh {
   struct Patch {
-    std::string name, type;      ///< "wall", "patch" or "cyclic"
-    std::string neighbour = {};  ///< of cyclic ones
+    std::string name, type;                    ///< "wall", "patch" or "cyclic"
+    std::string neighbour = {};                ///< of cyclic ones
     Vector<3> separation = Vector<3>::Zero();  ///< of cyclic ones, from here to the neighbour
     std::size_t first = 0, count = 0;
   };

@@ -8,7 +8,7 @@
 namespace bernal {
 namespace {
 
-std::string write_mesh_as_vtu(const MeshFile& file, StagedFolder& staged) {
+std::string write_mesh_as_vtu(const MeshToWrite& file, StagedFolder& staged) {
   constexpr std::uint8_t tetrahedron_type = 10, quadratic_type = 24;
   const VolumeMesh& mesh = file.mesh;
   const std::size_t cells = mesh.tetrahedra.size();

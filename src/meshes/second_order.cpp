@@ -16,8 +16,7 @@ using Barycentric = std::array<double, 4>;
 Eigen::Matrix3d derivative(const VolumeMesh& mesh, std::size_t t, const Barycentric& at) {
   // Shape functions: corner i has l_i (2 l_i - 1), the middle of i and j has 4 l_i l_j; l_0 = 1 - x - y - z.
   std::array<Vector<3>, 4> by{};  // derivatives by the four barycentric coordinates
-  for (std::size_t i = 0; i < 4; ++i)
-    by[i] = (4 * at[i] - 1) * mesh.vertices[mesh.tetrahedra[t][i]];
+  for (std::size_t i = 0; i < 4; ++i) by[i] = (4 * at[i] - 1) * mesh.vertices[mesh.tetrahedra[t][i]];
   for (std::size_t e = 0; e < 6; ++e) {
     const auto i = static_cast<std::size_t>(edges_of_tetrahedron[e][0]),
                j = static_cast<std::size_t>(edges_of_tetrahedron[e][1]);
@@ -43,7 +42,7 @@ struct EdgeOnSphere {
   Vector<3> normal = Vector<3>::Zero();  ///< of the plane that it lies on, too
 };
 
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
+std::uint64_t key_of_edge(std::uint32_t a, std::uint32_t b) {
   return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
 }
 
@@ -58,7 +57,7 @@ EdgesOnSpheres edges_on_spheres(const VolumeMesh& mesh) {
       if ((patch.kind == Kind::sphere) != spheres) continue;
       const FaceCorners& c = mesh.triangles[t];
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint64_t key = key_of(c[k], c[(k + 1) % 3]);
+        const std::uint64_t key = key_of_edge(c[k], c[(k + 1) % 3]);
         if (spheres) {
           edges[key].sphere = patch.index;
           continue;
@@ -79,7 +78,8 @@ EdgesOnSpheres edges_on_spheres(const VolumeMesh& mesh) {
 }
 
 /// The point of the sphere that is nearest to the middle, in the plane if there is one.
-Vector<3> on_sphere(const Vector<3>& middle, const Vector<3>& center, double radius, const EdgeOnSphere& edge) {
+Vector<3> on_sphere(const Vector<3>& middle, const Vector<3>& center, double radius,
+                    const EdgeOnSphere& edge) {
   if (!edge.has_plane) return center + radius * (middle - center).normalized();
   const double height = (middle - center).dot(edge.normal);
   const Vector<3> foot = center + height * edge.normal;
@@ -107,7 +107,7 @@ std::array<std::size_t, 3> pair_middles(VolumeMesh& mesh, const NumbersOfMiddles
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
         if (upper[a] == none || upper[b] == none) continue;
-        const auto there = number.find(key_of(upper[a], upper[b]));
+        const auto there = number.find(key_of_edge(upper[a], upper[b]));
         if (there != number.end()) pairs.push_back({mesh.middles_of_triangle[t][k], there->second});
       }
     }
@@ -188,7 +188,7 @@ CurvedEdges make_second_order(VolumeMesh& mesh, const Spheres<dynamic>& spheres,
   number.reserve(mesh.vertices.size() * 7);
   const auto middle_of = [&](std::uint32_t a, std::uint32_t b) {
     const auto [found, is_new] =
-        number.try_emplace(key_of(a, b), static_cast<std::uint32_t>(mesh.node_count()));
+        number.try_emplace(key_of_edge(a, b), static_cast<std::uint32_t>(mesh.node_count()));
     if (!is_new) return found->second;
     Vector<3> middle = (mesh.vertices[a] + mesh.vertices[b]) / 2;
     if (const auto edge = curved.find(found->first); edge != curved.end() && !edge->second.is_on_neck) {
@@ -230,7 +230,8 @@ CurvedEdges make_second_order(VolumeMesh& mesh, const Spheres<dynamic>& spheres,
     }
   }
   for (std::size_t k = 0; k < middles.ends.size(); ++k)
-    made.kept_straight += middles.is_straight[k] && curved.contains(key_of(middles.ends[k][0], middles.ends[k][1]));
+    made.kept_straight +=
+        middles.is_straight[k] && curved.contains(key_of_edge(middles.ends[k][0], middles.ends[k][1]));
   return made;
 }
 

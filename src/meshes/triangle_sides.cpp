@@ -17,9 +17,9 @@ FaceCorners from_least(FaceCorners corners) {
 
 [[noreturn]] void refuse(const VolumeMesh& mesh, std::size_t triangle) {
   const Vector<3> at = mesh.vertices[mesh.triangles[triangle][0]];
-  throw Error(ErrorCode::bad_mesh,
-              fmt::format("the mesh does not keep the surface near ({:.6g}, {:.6g}, {:.6g})", at[0], at[1],
-                          at[2]));
+  throw Error(
+      ErrorCode::bad_mesh,
+      fmt::format("the mesh does not keep the surface near ({:.6g}, {:.6g}, {:.6g})", at[0], at[1], at[2]));
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ struct TriangleSide {
 };
 
 /// Of every triangle the tetrahedra behind it and in front of it. Throws Error{bad_mesh} unless on each side
-/// that has a region there is exactly one, of that region, and on others none: the proof that a mesh keeps its
-/// surface. Cost: some 100 ns a tetrahedron.
+/// that has a region there is exactly one, of that region, and on others none: the proof that a mesh keeps
+/// its surface. Cost: some 100 ns a tetrahedron.
 std::vector<std::array<TriangleSide, 2>> sides_of_triangles(const VolumeMesh&);
 
 }  // namespace bernal

@@ -14,24 +14,24 @@ namespace bernal {
 
 /// A format that volume meshes are written in.
 struct MeshFormat {
-  std::string name;      ///< "openfoam"
-  std::string what;      ///< for whom, and what the files hold
-  std::string ending;    ///< of the file's name: ".msh"
-  int largest_order = 2; ///< of its elements
+  std::string name;       ///< "openfoam"
+  std::string what;       ///< for whom, and what the files hold
+  std::string ending;     ///< of the file's name: ".msh"
+  int largest_order = 2;  ///< of its elements
 };
 /// All of them, in the order in which users see them.
 std::vector<MeshFormat> mesh_formats();
 
 /// How a packing is meshed, and what is written. Lengths of edges are in radii.
 struct MeshFileOptions {
-  std::string format;                                    ///< the name of one of `mesh_formats`
+  std::string format;  ///< the name of one of `mesh_formats`
   ContactTreatment contact = ContactTreatment::bridge;
-  double gap = 0.01;            ///< contacts nearer than this are treated, see `SolidsOptions`
-  double bridge_radius = 0.2;   ///< of the smaller radius
-  double sphere_edge = 0.3;     ///< longest edges on spheres
-  double neck_edge = 0.15;      ///< edges where necks begin, of the smaller radius
-  bool solids = false;          ///< whether spheres and bridges are meshed too, or the fluid alone
-  int order = 1;                ///< 2: with middles of edges, on the true spheres
+  double gap = 0.01;           ///< contacts nearer than this are treated, see `SolidsOptions`
+  double bridge_radius = 0.2;  ///< of the smaller radius
+  double sphere_edge = 0.3;    ///< longest edges on spheres
+  double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
+  bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
+  int order = 1;               ///< 2: with middles of edges, on the true spheres
 };
 
 /// What the mesh of a packing is like.
@@ -43,20 +43,20 @@ struct MeshReport {
   std::size_t shrunk_necks = 0;  ///< whose radius is smaller than asked for
 
   std::size_t tetrahedra = 0, nodes = 0;
-  double least_sicn = 0, mean_sicn = 0;      ///< Gmsh's signed inverse condition number, of straight edges
-  double least_angle = 0, largest_angle = 0; ///< dihedral, in degrees
-  std::array<std::size_t, 10> histogram{};   ///< of the SICN, by tenths
+  double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
+  double least_angle = 0, largest_angle = 0;  ///< dihedral, in degrees
+  std::array<std::size_t, 10> histogram{};    ///< of the SICN, by tenths
   struct Place {
     double sicn = 1;
     Vector<3> center = Vector<3>::Zero();
   };
-  std::vector<Place> worst;              ///< up to ten tetrahedra, the worst first
+  std::vector<Place> worst;                      ///< up to ten tetrahedra, the worst first
   std::optional<double> least_curved_sicn = {};  ///< of second order
 
   double domain_volume = 0;
-  double porosity = 0;          ///< in closed form, contacts as they were treated
-  double meshed_porosity = 0;   ///< of the mesh
-  double contact_area = 0;      ///< cross-sections of necks, flat faces of caps
+  double porosity = 0;         ///< in closed form, contacts as they were treated
+  double meshed_porosity = 0;  ///< of the mesh
+  double contact_area = 0;     ///< cross-sections of necks, flat faces of caps
   struct Group {
     std::string name;
     double volume = 0;  ///< of the mesh
