@@ -263,6 +263,7 @@ double cap_volume(double radius, double height) {
 Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const SolidsOptions& options,
                  const Monitor& monitor) {
   Solids made{.spheres = spheres, .domain = domain, .pieces = {}, .bridges = {}, .contacts = {}};
+  made.bridge_radius = options.bridge_radius;
   const bool shrinks =
       options.contact == ContactTreatment::gap || options.contact == ContactTreatment::shrink;
   if (shrinks)

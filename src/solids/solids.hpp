@@ -29,6 +29,7 @@ struct Solids {
   /// Distance between the ends of the periods and the spheres that they nearly touch, over the radius;
   /// infinite without periods.
   double end_distance = 0;
+  double bridge_radius = 0;  ///< as asked for, over the radius of the smaller sphere
 };
 
 struct SolidsOptions {

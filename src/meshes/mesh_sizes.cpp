@@ -1,0 +1,134 @@
+#include "meshes/mesh_sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace bernal {
+namespace {
+
+double largest_of(const std::vector<double>& r) { return r.empty() ? 1 : std::ranges::max(r); }
+
+}  // namespace
+
+std::vector<double> spaced(double length, int least, const std::function<double(double)>& size) {
+  // Samples are not farther apart than sizes, as far as these do not change on less than their own length.
+  int samples = 64;
+  std::vector<double> sum;
+  for (;;) {
+    sum.assign(1, 0);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < samples; ++k) {
+      const double here = size((k + 0.5) / samples);
+      smallest = std::min(smallest, here);
+      sum.push_back(sum.back() + length / samples / here);
+    }
+    if (length / samples <= smallest || samples > (1 << 20)) break;
+    samples *= 4;
+  }
+  const int n = std::max(least, static_cast<int>(std::ceil(sum.back())));
+  std::vector<double> shares;
+  std::size_t k = 0;
+  for (int i = 1; i < n; ++i) {
+    const double wanted = sum.back() * i / n;
+    while (sum[k + 1] < wanted) ++k;
+    shares.push_back((static_cast<double>(k) + (wanted - sum[k]) / (sum[k + 1] - sum[k])) / samples);
+  }
+  return shares;
+}
+
+MeshSizes::MeshSizes(const Solids& solids, const SurfaceMeshOptions& options)
+    : solids_(solids),
+      options_(options),
+      boundary_(boundary_of<3>(solids.domain)),
+      spheres_(solids.spheres.in<3>()),
+      grid_(spheres_, boundary_, 2 * largest_of(solids.spheres.r)),
+      largest_(largest_of(solids.spheres.r)),
+      has_necks_(solids.contacts.treatment == ContactTreatment::bridge) {}
+
+std::vector<NearBall> MeshSizes::near(const Vector<3>& center, std::uint32_t sphere) const {
+  std::vector<NearBall> found;
+  const double r = spheres_.r[sphere], reach = options_.sphere_edge * r / options_.per_gap;
+  grid_.for_each_near(boundary_.wrap(center), r + largest_ + reach, [&](std::uint32_t j, const Vector<3>& d) {
+    const double distance = d.norm(), rj = spheres_.r[j], gap = distance - r - rj;
+    if (gap > reach || distance < 1e-9 * r) return;
+    const bool is_bridged = has_necks_ && gap < solids_.contacts.gap * (r + rj);
+    found.push_back({center + d, rj, is_bridged ? options_.neck_edge * std::min(r, rj) : 0});
+  });
+  std::ranges::sort(found, {}, [](const NearBall& b) {
+    return std::array{b.center[0], b.center[1], b.center[2]};
+  });
+  return found;
+}
+
+double MeshSizes::from_walls(const Vector<3>& p) const {
+  double least = std::numeric_limits<double>::infinity();
+  if (const auto* box = std::get_if<Box>(&solids_.domain)) {
+    for (int k = 0; k < 3; ++k)
+      if (!box->repeats(k))
+        least = std::min({least, p[k] - box->corner[k], box->corner[k] + box->size[k] - p[k]});
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&solids_.domain)) {
+    const Vector<3> a = cylinder->axis.normalized(), d = p - cylinder->base;
+    const double z = d.dot(a);
+    least = cylinder->radius - (d - z * a).norm();
+    if (!cylinder->periodic) least = std::min({least, z, cylinder->height - z});
+  }
+  return least;
+}
+
+double MeshSizes::from_ends(const Vector<3>& p) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+    if (boundary_.repeats(k))
+      least = std::min({least, std::abs(p[k] - boundary_.origin[k]),
+                        std::abs(boundary_.origin[k] + boundary_.edges[k] - p[k])});
+  return least;
+}
+
+double MeshSizes::on_sphere(const Vector<3>& p, const Vector<3>& center, double radius, bool is_cut_at_end,
+                            const std::vector<NearBall>& near) const {
+  double size = options_.sphere_edge * radius;
+  for (const NearBall& ball : near)
+    size = std::min(size, std::max(options_.per_gap * ((p - ball.center).norm() - ball.radius), ball.floor));
+  const double gap = from_walls(center) - radius;
+  if (gap < size / options_.per_gap) {
+    const double floor = has_necks_ && gap < solids_.contacts.gap * radius ? options_.neck_edge * radius : 0;
+    size = std::min(size, std::max(options_.per_gap * from_walls(p), floor));
+  }
+  if (!is_cut_at_end) size = std::min(size, options_.per_gap * from_ends(p));
+  // Contacts that nobody treated have no width.
+  return std::max(size, 1e-4 * radius);
+}
+
+double MeshSizes::on_wall(const Vector<3>& p, const Vector<3>& normal, bool is_end) const {
+  const double most = 4 * options_.sphere_edge * largest_;
+  double size = most;
+  grid_.for_each_near(boundary_.wrap(p), largest_ + most / growth, [&](std::uint32_t j, const Vector<3>& d) {
+    const double r = spheres_.r[j], from = std::abs(d.norm() - r);
+    const double along = std::abs(d.dot(normal)), beside = (d - d.dot(normal) * normal).norm();
+    size = std::min(size, options_.sphere_edge * r + growth * from);
+    const double gap = along - r;
+    if (is_end && along < r) {
+      const double rim = std::sqrt(r * r - along * along);
+      size = std::min(size, std::min(options_.sphere_edge * r, std::numbers::pi / 4 * rim) +
+                                growth * std::abs(beside - rim));
+    } else if (has_necks_ && !is_end && gap < solids_.contacts.gap * r) {
+      size = std::min({size, options_.neck_edge * r + growth * beside,
+                       std::max(options_.per_gap * from, options_.neck_edge * r)});
+    } else {
+      size = std::min(size, options_.per_gap * from);
+    }
+  });
+  return std::max(size, 1e-4 * largest_);
+}
+
+std::size_t MeshSizes::neck_count(double radius, double least_sphere, double height) const {
+  // Triangles between circles that are turned by half an edge keep 20 degrees up to this ratio.
+  constexpr double edge_per_height = 5.4;
+  const double around = 2 * std::numbers::pi * radius;
+  const double asked = std::max(6.0, std::ceil(around / (options_.neck_edge * least_sphere)));
+  const double for_angles = std::ceil(around / (edge_per_height * height));
+  return static_cast<std::size_t>(std::min(std::max(asked, for_angles), 4 * asked));
+}
+
+}  // namespace bernal

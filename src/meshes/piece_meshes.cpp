@@ -1,0 +1,169 @@
+// Triangles of spheres outside of their circles, of necks between them, and of flat faces inside them.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.hpp"
+#include "meshes/surface_draft.hpp"
+
+namespace bernal {
+namespace {
+
+double distance_to_circle(const Vector<3>& p, const Circle& circle) {
+  const double along = p.dot(circle.normal) - circle.depth;
+  const double beside = (p - p.dot(circle.normal) * circle.normal).norm() - circle.radius;
+  return std::hypot(along, beside);
+}
+
+/// The corners of an icosahedron.
+std::vector<Vector<3>> icosahedron() {
+  const double g = 0.5 * (1 + std::sqrt(5.0));
+  std::vector<Vector<3>> corners;
+  for (const double a : {-1.0, 1.0})
+    for (const double b : {-g, g})
+      for (const Vector<3>& p : {Vector<3>(0, a, b), Vector<3>(a, b, 0), Vector<3>(b, 0, a)})
+        corners.push_back(p.normalized());
+  return corners;
+}
+
+/// A mesh of a part with the ids of its boundary's points, and the size at those added.
+struct PartMesh {
+  std::vector<std::uint32_t> ids;
+  PatchMesh mesh;
+  std::vector<double> sizes;
+};
+
+/// Numbers of ids in a patch.
+class Numbering {
+ public:
+  std::uint32_t operator()(std::uint32_t id) {
+    const auto [entry, is_new] = number_.try_emplace(id, static_cast<std::uint32_t>(ids_.size()));
+    if (is_new) ids_.push_back(id);
+    return entry->second;
+  }
+  const std::vector<std::uint32_t>& ids() const { return ids_; }
+
+ private:
+  std::unordered_map<std::uint32_t, std::uint32_t> number_;
+  std::vector<std::uint32_t> ids_;
+};
+
+void add_chain(Patch& patch, Numbering& number, const std::vector<std::uint32_t>& chain, bool is_closed) {
+  for (std::size_t k = 0; k + (is_closed ? 0 : 1) < chain.size(); ++k)
+    patch.edges.push_back({number(chain[k]), number(chain[(k + 1) % chain.size()])});
+}
+
+PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
+  const Vector<3> center = part.piece.center;
+  const double r = part.piece.radius;
+  const std::vector<NearBall> near = draft.sizes.near(center, part.piece.sphere);
+  const bool is_cut_at_end =
+      std::ranges::any_of(part.circles, [](const Circle& c) { return c.kind == Circle::Kind::end; });
+  struct Source {
+    const Circle* circle;
+    double edge;
+  };
+  std::vector<Source> sources;
+  Patch patch{.surface = Delaunay::Surface::sphere, .extent = r};
+  Numbering number;
+  for (const Circle& circle : part.circles) {
+    auto& on = patch.circles.emplace_back();
+    for (const auto& chain : circle.chains) {
+      add_chain(patch, number, chain, circle.is_whole);
+      for (const std::uint32_t id : chain) on.push_back(number(id));
+    }
+    if (on.empty()) patch.circles.pop_back();
+    double edge = circle.edge;
+    if (circle.kind != Circle::Kind::neck)
+      edge = std::min(draft.options.sphere_edge * r, std::numbers::pi / 4 * circle.radius);
+    sources.push_back({&circle, edge});
+  }
+  for (const std::uint32_t id : number.ids()) patch.points.push_back(draft.made.vertices[id] - center);
+  patch.size = [&](const Vector<3>& p) {
+    double size = draft.sizes.on_sphere(center + p, center, r, is_cut_at_end, near);
+    for (const Source& source : sources)
+      size = std::min(size, source.edge + MeshSizes::growth * distance_to_circle(p, *source.circle));
+    return size;
+  };
+  for (const Vector<3>& corner : icosahedron()) {
+    const Vector<3> p = r * corner;
+    const bool is_free = std::ranges::all_of(part.circles, [&](const Circle& circle) {
+      return p.dot(circle.normal) < circle.depth &&
+             distance_to_circle(p, circle) > 0.5 * draft.options.sphere_edge * r;
+    });
+    if (is_free) patch.starts.push_back(p);
+  }
+  PartMesh made{number.ids(), mesh_patch(patch), {}};
+  for (Vector<3>& p : made.mesh.added) {
+    made.sizes.push_back(patch.size(p));
+    p += center;
+  }
+  return made;
+}
+
+void append(SurfaceDraft& draft, const PartMesh& part, std::uint32_t patch, bool turned = false) {
+  std::vector<std::uint32_t> id = part.ids;
+  for (std::size_t k = 0; k < part.mesh.added.size(); ++k)
+    id.push_back(draft.add_vertex(part.mesh.added[k], part.sizes[k]));
+  for (const FaceCorners& t : part.mesh.triangles)
+    draft.add_triangle(patch, id[t[0]], id[t[turned ? 2 : 1]], id[t[turned ? 1 : 2]]);
+}
+
+}  // namespace
+
+void mesh_pieces(SurfaceDraft& draft, const Monitor& monitor) {
+  const Interruptible interruptible(monitor);
+  constexpr std::size_t at_once = 4096;
+  for (std::size_t from = 0; from < draft.pieces.size(); from += at_once) {
+    const std::size_t n = std::min(at_once, draft.pieces.size() - from);
+    std::vector<PartMesh> parts(n);
+    parallel_ranges(n, 8, [&](std::size_t first, std::size_t last) {
+      for (std::size_t k = first; k < last; ++k) parts[k] = sphere_mesh(draft, draft.pieces[from + k]);
+    });
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto p = static_cast<std::uint32_t>(from + k);
+      const std::uint32_t patch = draft.add_patch({.kind = SurfacePatch::Kind::sphere,
+                                                   .index = draft.pieces[p].piece.sphere,
+                                                   .regions = {draft.region_of_piece(p), 0}});
+      append(draft, parts[k], patch);
+      parts[k] = {};
+    }
+    monitor.report(
+        {"mesh", static_cast<double>(from + n) / static_cast<double>(draft.pieces.size()), "spheres"});
+  }
+}
+
+void mesh_necks(SurfaceDraft& draft) {
+  for (std::uint32_t n = 0; n < draft.necks.size(); ++n) {
+    const DraftNeck neck = draft.necks[n];
+    const std::uint32_t patch = draft.add_patch(
+        {.kind = SurfacePatch::Kind::neck, .index = n, .regions = {draft.region_of_neck(n), 0}});
+    const std::size_t count = neck.count;
+    std::vector<std::uint32_t> before = neck.rims[0];
+    for (std::size_t row = 1; row <= neck.rows; ++row) {
+      std::vector<std::uint32_t> next = neck.rims[1];
+      if (row < neck.rows)
+        for (std::size_t k = 0; k < count; ++k) {
+          // Along the line of the neck's side that is half an edge on in each row.
+          const double share = static_cast<double>(row) / static_cast<double>(neck.rows);
+          const double half = std::numbers::pi / static_cast<double>(count);
+          const double t = 2 * half * static_cast<double>(k) + half * static_cast<double>(row);
+          const Vector<3> beside =
+              neck.radius * (std::cos(t) * neck.across + std::sin(t) * neck.axis.cross(neck.across));
+          const Vector<3> base = draft.pieces[neck.pieces[0]].piece.center;
+          const double lower = (draft.made.vertices[neck.rims[0][0]] - base).dot(neck.axis);
+          const double upper = (draft.made.vertices[neck.rims[1][0]] - base).dot(neck.axis);
+          next[k] = draft.add_vertex(base + beside + (lower + share * (upper - lower)) * neck.axis,
+                                     draft.made.size[neck.rims[0][0]]);
+        }
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t l = (k + 1) % count;
+        draft.add_triangle(patch, before[k], before[l], next[k]);
+        draft.add_triangle(patch, before[l], next[l], next[k]);
+      }
+      before = next;
+    }
+  }
+}
+
+}  // namespace bernal

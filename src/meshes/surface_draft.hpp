@@ -1,0 +1,124 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "meshes/conforming_surface.hpp"
+#include "meshes/mesh_sizes.hpp"
+#include "meshes/patch_mesh.hpp"
+
+namespace bernal {
+
+/// A plane that cuts a piece, the circle in it, and the points on that.
+struct Circle {
+  enum class Kind { neck, end, contact };
+  Kind kind = Kind::neck;
+  int face = Cut::contact;                ///< of ends: Cut::face
+  std::uint32_t neck = 0;                 ///< of necks
+  Vector<3> normal = Vector<3>::UnitZ();  ///< out of what is left of the ball
+  double depth = 0;                       ///< from the centre along the normal
+  double radius = 0;
+  double edge = 0;  ///< of necks: length of its edges
+  /// Parts outside of the other circles of the piece, counterclockwise about the normal; a whole circle does
+  /// not repeat its first point.
+  std::vector<std::vector<std::uint32_t>> chains = {};
+  bool is_whole = false;
+};
+
+struct DraftPiece {
+  Piece piece;
+  std::vector<Circle> circles = {};
+};
+
+/// A neck from a piece to another, or to a wall.
+struct DraftNeck {
+  std::array<std::uint32_t, 2> pieces = {};  ///< the second only between spheres
+  std::optional<std::uint32_t> wall = {};
+  std::uint32_t bond = 0;                                            ///< the same for images of one neck
+  Vector<3> axis = Vector<3>::UnitZ(), across = Vector<3>::UnitX();  ///< unit, perpendicular
+  double radius = 0, asked = 0;
+  double distance = 0;                                  ///< of the centres, or of the centre from the wall
+  std::size_t count = 0;                                ///< points of a circle
+  std::size_t rows = 1;                                 ///< of triangles from circle to circle
+  std::array<std::vector<std::uint32_t>, 2> rims = {};  ///< both run alike, the second turned by half an edge
+  double volume = 0;                                    ///< between the spheres, in closed form
+};
+
+/// A surface in the making.
+struct SurfaceDraft {
+  SurfaceDraft(const Solids& given, const SurfaceMeshOptions& asked)
+      : solids(given), options(asked), boundary(boundary_of<3>(given.domain)), sizes(given, asked) {}
+
+  const Solids& solids;
+  const SurfaceMeshOptions& options;
+  Boundary<3> boundary;
+  MeshSizes sizes;
+  std::vector<DraftPiece> pieces = {};
+  std::vector<DraftNeck> necks = {};
+  ConformingSurface made = {};
+
+  std::uint32_t add_vertex(const Vector<3>& p, double size) {
+    made.vertices.push_back(p);
+    made.size.push_back(size);
+    return static_cast<std::uint32_t>(made.vertices.size() - 1);
+  }
+  /// The vertex at a place on the end of a period, one for equal coordinates.
+  std::uint32_t vertex_at(const Vector<3>& p, double size) {
+    const auto [entry, is_new] = at_.try_emplace({p[0], p[1], p[2]}, 0);
+    if (is_new) entry->second = add_vertex(p, size);
+    return entry->second;
+  }
+  /// The vertex at the upper end of an axis that belongs to one at the lower.
+  std::uint32_t lifted(int axis, std::uint32_t lower) {
+    const auto [entry, is_new] = lifted_[static_cast<std::size_t>(axis)].try_emplace(lower, 0);
+    if (is_new) {
+      Vector<3> p = made.vertices[lower];
+      p[axis] = boundary.origin[axis] + boundary.edges[axis];
+      entry->second = vertex_at(p, made.size[lower]);
+      made.periodic[static_cast<std::size_t>(axis)].push_back({lower, entry->second});
+    }
+    return entry->second;
+  }
+  std::uint32_t add_patch(const SurfacePatch& patch) {
+    made.patches.push_back(patch);
+    return static_cast<std::uint32_t>(made.patches.size() - 1);
+  }
+  void add_triangle(std::uint32_t patch, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    made.triangles.push_back({a, b, c});
+    made.patch.push_back(patch);
+  }
+  std::int32_t region_of_piece(std::uint32_t piece) const {
+    return options.solids ? static_cast<std::int32_t>(1 + piece) : SurfacePatch::nothing;
+  }
+  std::int32_t region_of_neck(std::uint32_t neck) const {
+    return options.solids ? static_cast<std::int32_t>(1 + pieces.size() + neck) : SurfacePatch::nothing;
+  }
+
+ private:
+  std::map<std::array<double, 3>, std::uint32_t> at_;
+  std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 3> lifted_;
+};
+
+/// Finds the necks between spheres and to walls, makes them narrower where others would meet them, and puts
+/// their circles on the pieces and points on these.
+void add_necks(SurfaceDraft&);
+/// The points of all other circles; those at opposite ends are the same but for the period.
+void add_circles(SurfaceDraft&);
+/// Triangles of necks, and of the discs in which they begin where solids are asked for.
+void mesh_necks(SurfaceDraft&);
+/// Triangles of the spheres.
+void mesh_pieces(SurfaceDraft&, const Monitor&);
+/// Triangles of flat faces of caps and, with solids, of spheres at the ends of periods.
+void mesh_flat_faces(SurfaceDraft&);
+/// Triangles of the walls and ends of periods.
+void mesh_box(SurfaceDraft&, const Box&);
+void mesh_cylinder(SurfaceDraft&, const Cylinder&);
+/// Regions with points inside.
+void add_regions(SurfaceDraft&);
+/// Angles, edges and volumes.
+void state(SurfaceDraft&);
+
+}  // namespace bernal
