@@ -48,19 +48,23 @@ Vector<3> point_in_fluid(const SurfaceDraft& draft) {
 
 }  // namespace
 
+Vector<3> inner_point(const Piece& piece) {
+  // The centre, moved behind each cut until it is well behind all of them.
+  Vector<3> point = piece.center;
+  for (int round = 0; round < 50; ++round)
+    for (const Cut& cut : piece.cuts) {
+      const double beyond = cut.keeps.normal.dot(point) - cut.keeps.offset;
+      const double room = piece.radius + cut.keeps.offset - cut.keeps.normal.dot(piece.center);
+      if (beyond > -0.2 * room) point -= (beyond + 0.3 * room) * cut.keeps.normal;
+    }
+  return point;
+}
+
 void add_regions(SurfaceDraft& draft) {
   draft.made.regions.push_back({"fluid", {}, point_in_fluid(draft)});
   if (!draft.options.solids) return;
   for (const DraftPiece& piece : draft.pieces) {
-    // The centre, or what cuts leave nearest to it: half-way from the cut to the far end of the ball.
-    Vector<3> seed = piece.piece.center;
-    for (int round = 0; round < 50; ++round)
-      for (const Cut& cut : piece.piece.cuts) {
-        const double beyond = cut.keeps.normal.dot(seed) - cut.keeps.offset;
-        const double room = piece.piece.radius + cut.keeps.offset - cut.keeps.normal.dot(piece.piece.center);
-        if (beyond > -0.2 * room) seed -= (beyond + 0.3 * room) * cut.keeps.normal;
-      }
-    draft.made.regions.push_back({"spheres", piece.piece.sphere, seed});
+    draft.made.regions.push_back({"spheres", piece.piece.sphere, inner_point(piece.piece)});
   }
   for (const DraftNeck& neck : draft.necks) {
     const Vector<3> from = draft.made.vertices[neck.rims[0][0]], to = draft.made.vertices[neck.rims[1][0]];

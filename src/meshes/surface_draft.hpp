@@ -116,6 +116,8 @@ void mesh_flat_faces(SurfaceDraft&);
 /// Triangles of the walls and ends of periods.
 void mesh_box(SurfaceDraft&, const Box&);
 void mesh_cylinder(SurfaceDraft&, const Cylinder&);
+/// A point inside a piece and not near its cuts.
+Vector<3> inner_point(const Piece&);
 /// Regions with points inside.
 void add_regions(SurfaceDraft&);
 /// Angles, edges and volumes.
