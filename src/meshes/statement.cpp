@@ -100,7 +100,11 @@ void state(SurfaceDraft& draft) {
   statement.least_angle_off_necks = off_necks * 180 / std::numbers::pi;
   statement.least_edge = edge;
   statement.meshed_fluid_volume = six / 6;
-  statement.fluid_volume = volume_of(draft.solids.domain) - volume_of_balls(draft.solids.spheres);
+  const ContactReport& contacts = draft.solids.contacts;
+  const bool is_capped = contacts.treatment == ContactTreatment::cap;
+  statement.fluid_volume = volume_of(draft.solids.domain) -
+                           (is_capped ? contacts.volume_after : volume_of_balls(draft.solids.spheres));
+  if (is_capped) statement.contact_area = contacts.contact_area;
   std::vector<char> counted(draft.necks.size(), 0);
   for (const DraftNeck& neck : draft.necks)
     if (!std::exchange(counted[neck.bond], 1)) statement.fluid_volume -= neck.volume;
