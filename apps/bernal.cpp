@@ -40,6 +40,7 @@ Explanation explanation() {
                    {"bernal verify out", "certify what stands in the files, from scratch"},
                    {"bernal measure out", "contacts, rattlers, g(r), sizes against those asked for"},
                    {"bernal cells out --to neper -o grains.tess", "the cells around spheres, for Neper"},
+                   {"bernal mesh out --to openfoam -o case/bed.foam", "tetrahedra between the spheres"},
                    {"bernal export out --to lammps -o out.data",
                     "for LAMMPS, YADE, OVITO, OpenMC, POV-Ray, …"},
                    {"bernal import dump.lammpstrj --unit mm -o out",
@@ -90,14 +91,15 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a run is not lost because nobody reads what it says
   int status = exit_code::done;
   try {
-    Command command = {"bernal",
-                       description,
-                       {},
-                       explanation(),
-                       {},
-                       {pack_command(), verify_command(), inspect_command(), explain_command(),
-                        cost_command(), sweep_command(), measure_command(), cells_command(), export_command(),
-                        import_command(), predict_command(), design_command(), map_command()}};
+    Command command = {
+        "bernal",
+        description,
+        {},
+        explanation(),
+        {},
+        {pack_command(), verify_command(), inspect_command(), explain_command(), cost_command(),
+         sweep_command(), measure_command(), cells_command(), mesh_command(), export_command(),
+         import_command(), predict_command(), design_command(), map_command()}};
     command.commands.insert(command.commands.begin() + 4, keys_command(command));
     command.commands.push_back(help_command(command));
     command.commands.push_back(completion_command(command));

@@ -10,6 +10,7 @@ Command cost_command();
 Command sweep_command();
 Command measure_command();
 Command cells_command();
+Command mesh_command();
 Command predict_command();
 Command design_command();
 Command map_command();

@@ -13,6 +13,7 @@
 #include "bernal/formats/import.hpp"
 #include "bernal/hard/grow.hpp"
 #include "bernal/measure/measure.hpp"
+#include "bernal/mesh_files/mesh_packing.hpp"
 #include "bernal/predict/design.hpp"
 #include "bernal/predict/predict.hpp"
 #include "bernal/result/certify_levels.hpp"

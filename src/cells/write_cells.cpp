@@ -11,7 +11,7 @@
 #include "cells/cell_file.hpp"
 #include "core/parallel.hpp"
 #include "formats/text_file.hpp"
-#include "result/result_folder.hpp"
+#include "result/free_places.hpp"
 
 namespace fs = std::filesystem;
 
@@ -40,23 +40,6 @@ void require_positive(const std::optional<double>& value, const char* what, doub
   if (value && !(*value > 0 && *value < most))
     refuse(fmt::format("{} must be above 0 and below {}, not {}", what, most, *value));
 }
-
-/// Throws where a file of a result, or something that is no file, would be replaced.
-void require_free(const fs::path& folder, const std::vector<std::string>& names) {
-  const Manifest of_result = manifest_of(folder);
-  for (const std::string& name : names) {
-    const fs::path file = folder / name;
-    if (of_result.contains(name) || is_in_place_of_result(file, folder))
-      throw Error(ErrorCode::cannot_write, "belongs to the result in that folder; give another ‹file›",
-                  {file.string()});
-    std::error_code unknown;
-    if (stands(file) && !fs::is_regular_file(fs::symlink_status(file, unknown)))
-      throw Error(ErrorCode::cannot_write, "is a folder, a link or a device; give the name of a file",
-                  {file.string()});
-  }
-}
-
-fs::path folder_of(const fs::path& file) { return file.parent_path().empty() ? "." : file.parent_path(); }
 
 std::string cells_in_words(const CellFile& file) {
   const Cells& cells = file.cells;

@@ -116,6 +116,8 @@ struct FileContents {
   std::optional<Scene> container = {};  ///< with the container, where the file says it
   bool is_flat = false;                 ///< the file states two dimensions; the third coordinate is ignored
   std::string note = {};
+  std::vector<Layer> layers = {};      ///< of all spheres, in the file's unit
+  std::vector<ImportNote> notes = {};  ///< what else the reader has to say
 
   std::size_t size() const { return spheres.x.front().size(); }
 };

@@ -156,6 +156,8 @@ ImportedPacking taken_over(FileContents contents, const Reading& reading, const 
   packing.domain = std::move(place.domain);
   packing.volume = volume_of(packing.domain);
   packing.scene = std::move(place.scene);
+  if (!contents.layers.empty() && packing.scene.dimension() == 3)
+    packing.scene.layers = std::move(contents.layers);
   packing.program = this_program();
   packing.expected_packing_fraction = std::numeric_limits<double>::quiet_NaN();  // unknown
   packing.outcome = Outcome::imported;
@@ -171,6 +173,7 @@ ImportedPacking taken_over(FileContents contents, const Reading& reading, const 
        fmt::format("{}, {} {}, packing fraction {:.4f}{}", grouped(packing.spheres.size()),
                    range_of_sizes(packing.spheres.r), name_of(packing.scene.unit), packing.packing_fraction(),
                    packing.packing_fraction() > 1 ? "; above 1: are the sizes diameters?" : "")});
+  std::ranges::move(contents.notes, std::back_inserter(made.notes));
   made.notes.push_back({"domain", place.words});
   if (!place.shift.empty())
     made.notes.push_back({"moved", fmt::format("by {}, so that the corner of the box is at zero",

@@ -301,16 +301,6 @@ std::string write_openmc_model(const Exported& file, StagedFolder& staged) {
   return model.in_words();
 }
 
-FileContents read_openmc_model(const Reading& reading) {
-  return read_level(reading, [](std::string_view line, std::vector<std::string_view>& parts) {
-    constexpr std::string_view before = "type=\"sphere\" coeffs=\"";
-    const std::size_t at = line.find(before);
-    if (at == line.npos) return;
-    line.remove_prefix(at + before.size());
-    split_at(line.substr(0, line.find('"')), " ", parts);
-  });
-}
-
 bool is_openmc_model(const FileBeginning& file) {
   return file.begins("<?xml") && file.has("<!-- bernal ") && file.has("<geometry>");
 }

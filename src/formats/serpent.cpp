@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "files/file_kind.hpp"
 #include "files/seal.hpp"
+#include "formats/level_layers.hpp"
 #include "formats/level_marks.hpp"
 #include "formats/level_walls.hpp"
 #include "formats/text_file.hpp"
@@ -173,6 +175,55 @@ std::vector<std::string> level_files(const Packing& packing, const Output& outpu
   return files;
 }
 
+/// What universes of spheres hold, as the input says it.
+class SerpentContents {
+ public:
+  explicit SerpentContents(const Reading& reading) {
+    ForeignLines lines(reading);
+    while (lines.next()) take(lines);
+    for (ShellsInFile& of : kinds_)  // of what is filled, what stands around the spheres in it
+      if (of.is_filled) of.materials.front() = around_["around_" + of.materials.front()];
+  }
+
+  /// Of the universe of a sphere, its place in `kinds`; that of one that holds nothing where it is unknown.
+  std::uint32_t kind_of(std::string_view universe) {
+    if (const auto wrapped = wrapped_.find(universe); wrapped != wrapped_.end()) universe = wrapped->second;
+    const auto found = places_.find(universe);
+    return found == places_.end() ? 0 : found->second;
+  }
+  const std::vector<ShellsInFile>& kinds() const { return kinds_; }
+  const DensitiesInFile& densities() const { return densities_; }
+
+ private:
+  void take(ForeignLines& lines) {
+    const auto words = lines.words();
+    if (words.size() == 3 && words[0] == "mat" && words[2].starts_with('-') && is_number(words[2]))
+      densities_[std::string(words[1])] = -1000 * lines.number(words[2], "the density");
+    if (words.size() == 7 && words[0] == "surf" && words[2] == "sph" && is_number(words[6]))
+      ends_[std::string(words[1])] = lines.number(words[6], "the radius");
+    if (words.size() < 4 || words[0] != "cell") return;
+    const bool is_fill = words[3] == "fill" && words.size() > 4;
+    const std::string universe(words[2]), held(words[is_fill ? 4 : 3]);
+    if (universe.starts_with("w_") && is_fill) wrapped_[universe] = held;
+    if (universe.starts_with("around_")) around_[universe] = held;
+    if (!universe.starts_with('s')) return;
+    const auto [known, is_new] = places_.try_emplace(universe, static_cast<std::uint32_t>(kinds_.size()));
+    if (is_new) kinds_.emplace_back();
+    ShellsInFile& shells = kinds_[known->second];
+    shells.is_filled = shells.is_filled || is_fill;
+    shells.materials.push_back(held);
+    if (words.back().starts_with('-'))
+      if (const auto end = ends_.find(words.back().substr(1)); end != ends_.end())
+        shells.ends.push_back(end->second);
+  }
+
+  std::map<std::string, double, std::less<>> ends_;
+  std::map<std::string, std::uint32_t, std::less<>> places_;
+  std::map<std::string, std::string, std::less<>> wrapped_, around_;
+  std::vector<ShellsInFile> kinds_ = {{}};
+  DensitiesInFile densities_;
+};
+
 /// The level is found in the input, its spheres in the file beside it.
 FileContents read_serpent(const Reading& reading) {
   ForeignLines input(reading);
@@ -183,10 +234,16 @@ FileContents read_serpent(const Reading& reading) {
   if (kind_of_file(file) != FileKind::regular)
     throw Error(ErrorCode::bad_packing, "is named by the input, and is not there", {file.string()});
   ForeignLines rows(Reading{file, reading.options, reading.monitor});
+  SerpentContents held(reading);
+  std::vector<std::uint32_t> which;
   read_spheres(
       rows, spheres,
-      [](std::string_view line, std::vector<std::string_view>& parts) { split_at(line, " ", parts); },
+      [&](std::string_view line, std::vector<std::string_view>& parts) {
+        split_at(line, " ", parts);
+        if (parts.size() > 4) which.push_back(held.kind_of(parts[4]));
+      },
       contents);
+  if (which.size() == contents.size()) take_layers(contents, held.kinds(), which, held.densities());
   return contents;
 }
 

@@ -10,7 +10,7 @@
 namespace bernal {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Directions in the plane of a circle.
 struct CircleFrame {

@@ -21,8 +21,8 @@
 #include "core/disjoint_sets.hpp"
 #include "files/bytes_of_file.hpp"
 #include "files/descriptor.hpp"
-#include "meshes/mesh_quality.hpp"
 #include "meshes/tetgen.hpp"
+#include "meshes/triangle_sides.hpp"
 #include "process/child.hpp"
 #include "process/find_program.hpp"
 
@@ -192,47 +192,6 @@ std::vector<Vector<3>> points_of_holes(const ConformingSurface& surface) {
   return points;
 }
 
-void require_kept_surface(const VolumeMesh& mesh) {
-  // Triangles by their least corner: of each vertex those from first[v] to first[v + 1].
-  const auto least = [](const FaceCorners& c) { return std::min({c[0], c[1], c[2]}); };
-  std::vector<std::uint32_t> first(mesh.vertices.size() + 1, 0), sorted(mesh.triangles.size());
-  for (const FaceCorners& triangle : mesh.triangles) ++first[least(triangle) + 1];
-  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) sorted[next[least(mesh.triangles[t])]++] = t;
-  const auto from_least = [&](FaceCorners c) {
-    std::ranges::rotate(c, std::ranges::min_element(c));
-    return c;
-  };
-  std::vector<std::array<std::uint8_t, 2>> met(mesh.triangles.size());
-  const auto fail = [&](std::uint32_t t) {
-    const Vector<3> at = mesh.vertices[mesh.triangles[t][0]];
-    throw Error(ErrorCode::bad_mesh, fmt::format("the mesh does not keep the surface near ({:.6g}, {:.6g}, "
-                                                 "{:.6g}); please report this",
-                                                 at[0], at[1], at[2]));
-  };
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
-    for (const auto& face : faces_of_tetrahedron) {
-      FaceCorners c{};
-      for (std::size_t k = 0; k < 3; ++k) c[k] = mesh.tetrahedra[t][static_cast<std::size_t>(face[k])];
-      c = from_least(c);
-      for (std::uint32_t k = first[c[0]]; k < first[c[0] + 1]; ++k) {
-        const FaceCorners of = from_least(mesh.triangles[sorted[k]]);
-        const bool is_same = of == c, is_turned = of[1] == c[2] && of[2] == c[1];
-        if (!is_same && !is_turned) continue;
-        const std::size_t side = is_same ? 0 : 1;
-        if (mesh.patches[mesh.patch[sorted[k]]].regions[side] != static_cast<std::int32_t>(mesh.region[t]))
-          fail(sorted[k]);
-        ++met[sorted[k]][side];
-      }
-    }
-  for (std::uint32_t t = 0; t < met.size(); ++t)
-    for (std::size_t side = 0; side < 2; ++side) {
-      const bool has_region = mesh.patches[mesh.patch[t]].regions[side] != SurfacePatch::nothing;
-      if (met[t][side] != (has_region ? 1 : 0)) fail(t);
-    }
-}
-
 VolumeMesh fill(const ConformingSurface& surface, const FillOptions& options, FillReport& report,
                 const Monitor& monitor) {
   const Stopwatch watch;
@@ -252,7 +211,7 @@ VolumeMesh fill(const ConformingSurface& surface, const FillOptions& options, Fi
   const Stopwatch improving;
   report.improvements = improve(mesh, {.goal = options.goal}, monitor);
   report.seconds_improving = improving.seconds();
-  require_kept_surface(mesh);
+  sides_of_triangles(mesh);  // which throws unless the surface is kept
   report.volume_error = volume_error(mesh, surface);
   return mesh;
 }

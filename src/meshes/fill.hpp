@@ -33,8 +33,4 @@ VolumeMesh fill(const ConformingSurface&, const FillOptions&, FillReport&, const
 /// together and has such a side inside of the domain.
 std::vector<Vector<3>> points_of_holes(const ConformingSurface&);
 
-/// Throws Error{bad_mesh} unless every triangle is a face of one tetrahedron of the right region on each of
-/// its sides.
-void require_kept_surface(const VolumeMesh&);
-
 }  // namespace bernal

@@ -33,9 +33,4 @@ struct MeshQuality {
 /// Cost: some 100 ns a tetrahedron. Of edges that are straight.
 MeshQuality quality_of(const VolumeMesh&);
 
-/// The least SICN of the curved tetrahedron: of the map's derivative at corners, middles and centroid, over
-/// all tetrahedra; not positive where one is turned inside out at one of these points.
-/// Precondition: `is_curved`.
-double least_curved_sicn(const VolumeMesh&);
-
 }  // namespace bernal

@@ -12,7 +12,7 @@
 namespace bernal {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// No neck becomes narrower than this share of what was asked for.
 constexpr double least_share = 0.2;
 

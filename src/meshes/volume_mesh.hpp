@@ -27,7 +27,7 @@ struct VolumeMesh {
   std::vector<std::uint32_t> patch;  ///< of each triangle
   std::vector<SurfacePatch> patches;
   std::vector<MeshRegion> regions;
-  /// Vertices of opposite ends of periods, (lower, upper) by axis.
+  /// Nodes of opposite ends of periods, (lower, upper) by axis: equal but for the coordinate along it.
   std::array<std::vector<std::array<std::uint32_t, 2>>, 3> periodic;
   /// Second order: the middles of edges, as numbers among the nodes, which are the vertices and then these.
   std::vector<Vector<3>> middles = {};

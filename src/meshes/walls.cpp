@@ -9,7 +9,7 @@
 namespace bernal {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Adds the circles in which spheres or necks meet a wall or an end.
 void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, bool as_holes,

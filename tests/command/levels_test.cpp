@@ -241,6 +241,90 @@ TEST(Levels, EveryLevelIsReadBack) {
   EXPECT_FALSE(std::filesystem::exists(folder / "nested.inp"));
 }
 
+/// What the notes of an import say of something; empty where they are silent.
+std::string said_of(const ImportedPacking& read, std::string_view about) {
+  for (const ImportNote& note : read.notes)
+    if (note.about == about) return note.text;
+  return {};
+}
+
+/// Layers of the same spheres end at the same places, in cm, and are of the same materials.
+void expect_same_layers(const Packing& read, const Packing& known, const std::string& what) {
+  const SphereLayers a = layers_of(read), b = layers_of(known);
+  ASSERT_EQ(a.first, b.first) << what;
+  const double to_cm = metres_per(known.scene.unit) / 0.01;
+  for (std::size_t k = 0; k < b.outer.size(); ++k)
+    ASSERT_NEAR(a.outer[k], to_cm * b.outer[k], 1e-12 * a.outer[k]) << what << " " << k;
+  for (std::size_t k = 0; k < b.of_class[0].size(); ++k) {
+    EXPECT_EQ(material_of(a.of_class[0][k]), material_of(b.of_class[0][k])) << what;
+    EXPECT_EQ(a.of_class[0][k].material_density, b.of_class[0][k].material_density) << what;
+  }
+}
+
+TEST(Levels, LayersAreReadBackFromTheirShells) {
+  const Folder folder;
+  const auto reads = [&](const Packing& packing, const std::string& format, const std::string& name,
+                         const std::string& file, const std::string& level = {}) {
+    std::filesystem::remove_all(folder / name);
+    write_export(packing, output_of(format), folder / name);
+    return import_packing(folder / file, {.level = level});
+  };
+  const auto each = [](const auto& call) {
+    for (const auto& [format, name, file] :
+         {std::array<std::string, 3>{"openmc", "model", "model/geometry.xml"},
+          {"openmc", "model.xml", "model.xml"},
+          {"serpent", "core.inp", "core.inp"}})
+      call(format, name, file);
+  };
+  // Of spheres of many sizes: a share, what is left, a thickness; some of them images of others.
+  const Packing box = with_layers(
+      apart(exports::periodic()),
+      R"([{name = "kernel", share = 0.3, material_density = "10.4 g/cm3"}, {name = "buffer"}, {name = "SiC", thickness = 0.004}])");
+  const Packing twice = with_layers(
+      layered_cylinder({0, 0, 1}),
+      R"([{name = "in", thickness = 0.01, material = "C"}, {name = "middle"}, {name = "out", material = "C", share = 0.1}])");
+  Packing drawn = layered_cylinder({0, 0, 1});
+  drawn = with_layers(
+      drawn,
+      R"([{name = "in"}, {name = "out", thickness = {distribution = "normal", mean = 0.01, sd = 0.001}}])");
+  const Packing nest = nested(true);
+  each([&](const std::string& format, const std::string& name, const std::string& file) {
+    const ImportedPacking of_box = reads(box, format, name, file);
+    EXPECT_EQ(said_of(of_box, "layers"), "kernel, buffer, SiC") << format;
+    expect_same_layers(of_box.packing, box, format + " box");
+    const ImportedPacking of_twice = reads(twice, format, name, file);
+    EXPECT_EQ(said_of(of_twice, "layers"), "C, middle, C 2") << format;
+    expect_same_layers(of_twice.packing, twice, format + " twice");
+    const ImportedPacking of_drawn = reads(drawn, format, name, file);
+    EXPECT_NE(said_of(of_drawn, "layers").find("are not taken over: they differ"), std::string::npos)
+        << format;
+    EXPECT_TRUE(of_drawn.packing.scene.layers.empty());
+    const ImportedPacking of_nest = reads(nest, format, name, file);
+    expect_same_layers(of_nest.packing, nest, format + " nest");
+    EXPECT_EQ(said_of(of_nest, "layers"), "fuel, graphite") << format;
+    EXPECT_NE(said_of(of_nest, "inside")
+                  .find(fmt::format("in {} of {} spheres are not taken over", nest.inside[0].spheres.size(),
+                                    nest.spheres.size())),
+              std::string::npos)
+        << said_of(of_nest, "inside");
+    const ImportedPacking inner = reads(nest, format, name, file, "core-1-2");
+    expect_same_layers(inner.packing, *nest.inside[0].templates[1], format + " inside");
+    EXPECT_EQ(said_of(inner, "inside"), "");
+    // A result of it is packed, certified and written again.
+    write_imported(of_box.packing, folder / file, folder / ("out_" + name));
+    EXPECT_EQ(bernal({"verify", (folder / ("out_" + name)).string()}).status, 0);
+  });
+  // Shells that somebody has changed are no layers, and the spheres are read all the same.
+  write_export(box, output_of("serpent"), folder / "core.inp");
+  std::string text = text_of(folder / "core.inp");
+  const std::size_t at = text.find(" sph 0 0 0 ") + 11;
+  text.replace(at, text.find('\n', at) - at, "5");
+  folder.write("core.inp", text);
+  const ImportedPacking changed = import_packing(folder / "core.inp");
+  EXPECT_NE(said_of(changed, "layers").find("is not as bernal wrote it"), std::string::npos);
+  expect_same_spheres(changed.packing, box, "changed");
+}
+
 TEST(Levels, WhatNoProgramHoldsIsRefusedInALine) {
   const Folder folder;
   const Mesh walls{{{0, 0, 0}, {90, 0, 0}, {0, 90, 0}, {0, 0, 90}},

@@ -1,0 +1,103 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bernal/core/monitor.hpp"
+#include "bernal/scene/packing.hpp"
+#include "bernal/solids/contact_treatment.hpp"
+
+namespace bernal {
+
+/// A format that volume meshes are written in.
+struct MeshFormat {
+  std::string name;       ///< "openfoam"
+  std::string what;       ///< for whom, and what the files hold
+  std::string ending;     ///< of the file's name: ".msh"
+  int largest_order = 2;  ///< of its elements
+};
+/// All of them, in the order in which users see them.
+std::vector<MeshFormat> mesh_formats();
+
+/// How a packing is meshed, and what is written. Lengths of edges are in radii.
+struct MeshFileOptions {
+  std::string format;  ///< the name of one of `mesh_formats`
+  ContactTreatment contact = ContactTreatment::bridge;
+  double gap = 0.01;           ///< contacts nearer than this are treated, see `SolidsOptions`
+  double bridge_radius = 0.2;  ///< of the smaller radius
+  double sphere_edge = 0.3;    ///< longest edges on spheres
+  double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
+  bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
+  int order = 1;               ///< 2: with middles of edges, on the true spheres
+};
+
+/// What the mesh of a packing is like.
+struct MeshReport {
+  std::size_t spheres = 0, necks = 0, triangles = 0;
+  double least_edge = 0;            ///< of all triangles, as a length
+  double least_triangle_angle = 0;  ///< in degrees
+  Vector<3> place_of_least_angle = Vector<3>::Zero();
+  std::size_t shrunk_necks = 0;  ///< whose radius is smaller than asked for
+
+  std::size_t tetrahedra = 0, nodes = 0;
+  double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
+  double least_angle = 0, largest_angle = 0;  ///< dihedral, in degrees
+  std::array<std::size_t, 10> histogram{};    ///< of the SICN, by tenths
+  struct Place {
+    double sicn = 1;
+    Vector<3> center = Vector<3>::Zero();
+  };
+  std::vector<Place> worst;                      ///< up to ten tetrahedra, the worst first
+  std::optional<double> least_curved_sicn = {};  ///< of second order
+
+  double domain_volume = 0;
+  double porosity = 0;         ///< in closed form, contacts as they were treated
+  double meshed_porosity = 0;  ///< of the mesh
+  double contact_area = 0;     ///< cross-sections of necks, flat faces of caps
+  struct Group {
+    std::string name;
+    double volume = 0;  ///< of the mesh
+    std::size_t tetrahedra = 0;
+  };
+  std::vector<Group> groups;
+
+  struct Part {
+    std::string name;
+    double seconds = 0;
+    double peak_bytes = 0;  ///< of a program that was started; 0: in this process
+  };
+  std::vector<Part> parts;
+
+  /// Whether the least SICN is as large as it is promised to be.
+  static constexpr double promised_sicn = 0.1;
+  bool keeps_promise() const { return least_sicn >= promised_sicn; }
+};
+
+struct MeshedPacking {
+  MeshReport report;
+  std::vector<std::filesystem::path> files;  ///< the format's file, then those that go with it
+  std::string note;                          ///< what they hold, in one line
+};
+
+/// Throws Error{bad_argument} for a format that is not there, with the nearest name, and for options that it
+/// does not take or that are out of range.
+void require_mesh_format(const MeshFileOptions&, int dimension);
+
+/// Meshes the space between the spheres of a packing, and the spheres where that is asked for, by
+/// tetrahedra that fit to each other, and writes them in the scene's unit to `file` and for some formats to
+/// others beside it. All appear whole, or none; existing files of these names are replaced. The surface is
+/// bernal's own, equal at opposite ends of periods; TetGen fills it, a program of its own.
+///
+/// Throws as `require_mesh_format`; Error{bad_argument} for containers that cannot be meshed and where TetGen
+/// is not installed, with the remedy; Error{bad_mesh} where TetGen fails; Error{cannot_write} if a file of a
+/// result would be overwritten; Cancelled. Cost: about 0.1 s, 1,000 tetrahedra and 1 MB a sphere.
+MeshedPacking mesh_packing(const Packing&, const MeshFileOptions&, const std::filesystem::path& file,
+                           const Monitor& monitor = {});
+
+/// The report as a JSON object: what `bernal mesh --json` prints.
+std::string mesh_report_as_json(const Packing&, const MeshReport&);
+
+}  // namespace bernal

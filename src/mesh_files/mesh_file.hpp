@@ -1,0 +1,64 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bernal/mesh_files/mesh_packing.hpp"
+#include "files/staged_folder.hpp"
+#include "meshes/triangle_sides.hpp"
+#include "meshes/volume_mesh.hpp"
+
+namespace bernal {
+
+/// Names of what belongs together in files: of patches "spheres", "necks", "x_lower", and of regions "fluid".
+struct MeshGroups {
+  std::vector<std::string> surfaces, volumes;
+  std::vector<std::uint32_t> surface_of_patch, volume_of_region;
+
+  std::uint32_t surface_of(const VolumeMesh& mesh, std::size_t triangle) const {
+    return surface_of_patch[mesh.patch[triangle]];
+  }
+  std::uint32_t volume_of(const VolumeMesh& mesh, std::size_t tetrahedron) const {
+    return volume_of_region[mesh.region[tetrahedron]];
+  }
+  /// The number of a surface by its name; surfaces.size() if there is none.
+  std::uint32_t surface_named(std::string_view name) const;
+};
+MeshGroups groups_of(const VolumeMesh&, const Domain&);
+
+/// "x_lower" for 0, "x_upper" for 1, up to "z_upper" for 5.
+std::string name_of_end(std::uint32_t face);
+
+/// What a writer is given.
+struct MeshToWrite {
+  const VolumeMesh& mesh;
+  const MeshGroups& groups;
+  const std::filesystem::path& name;  ///< of the file, in the folder
+  std::string_view title;             ///< "bernal 0.2.0 (…): mesh of 1,000 spheres", in ASCII
+  std::string_view unit;
+};
+
+/// An entry of the list of formats.
+struct MeshWriter {
+  MeshFormat format;
+  std::vector<std::string_view> others = {};  ///< names of files that go with it
+  std::string_view beside = {};               ///< and how that of another ends, after the stem of the file's
+  /// Writes the files and returns what they hold.
+  std::string (*write)(const MeshToWrite&, StagedFolder&);
+};
+
+MeshWriter gmsh_of_mesh();
+MeshWriter abaqus_of_mesh();
+MeshWriter openfoam_of_mesh();
+MeshWriter vtu_of_mesh();
+
+/// Numbers of what is in each group, in their order: [k] of those with group(i) = k.
+template <class Group>
+std::vector<std::vector<std::uint32_t>> by_group(std::size_t count, std::size_t groups, const Group& group) {
+  std::vector<std::vector<std::uint32_t>> of(groups);
+  for (std::uint32_t i = 0; i < count; ++i) of[group(i)].push_back(i);
+  return of;
+}
+
+}  // namespace bernal

@@ -1,0 +1,158 @@
+#include "bernal/mesh_files/mesh_packing.hpp"
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
+#include "bernal/version.hpp"
+#include "mesh_files/mesh_file.hpp"
+#include "meshes/conforming_surface.hpp"
+#include "meshes/fill.hpp"
+#include "meshes/mesh_quality.hpp"
+#include "meshes/second_order.hpp"
+#include "result/free_places.hpp"
+#include "solids/solids.hpp"
+
+namespace fs = std::filesystem;
+
+namespace bernal {
+namespace {
+
+const std::vector<MeshWriter>& mesh_writers() {
+  static const std::vector<MeshWriter> all = {gmsh_of_mesh(), abaqus_of_mesh(), openfoam_of_mesh(),
+                                              vtu_of_mesh()};
+  return all;
+}
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
+
+const MeshWriter& mesh_writer_of(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const MeshWriter& writer : mesh_writers()) {
+    if (writer.format.name == name) return writer;
+    names.emplace_back(writer.format.name);
+  }
+  refuse(fmt::format("unknown format of meshes \"{}\"{}", plain_text(name), remedy(name, names)));
+}
+
+void require_between(double value, double most, const char* what) {
+  if (!(value > 0 && value < most))
+    refuse(fmt::format("{} must be above 0 and below {}, not {}", what, most, value));
+}
+
+void take_surface(const ConformingSurface& surface, MeshReport& report) {
+  const SurfaceStatement& stated = surface.statement;
+  report.necks = surface.necks.size();
+  report.triangles = surface.triangles.size();
+  report.least_edge = stated.least_edge;
+  report.least_triangle_angle = stated.least_angle;
+  report.place_of_least_angle = stated.place_of_least_angle;
+  report.shrunk_necks = stated.shrunk_necks;
+  report.porosity = stated.fluid_volume / report.domain_volume;
+  report.contact_area = stated.contact_area;
+}
+
+void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, MeshReport& report) {
+  const MeshQuality quality = quality_of(mesh);
+  report.tetrahedra = mesh.tetrahedra.size();
+  report.nodes = mesh.node_count();
+  report.least_sicn = quality.least_sicn;
+  report.mean_sicn = quality.mean_sicn;
+  report.least_angle = quality.least_angle;
+  report.largest_angle = quality.largest_angle;
+  report.histogram = quality.histogram;
+  for (const MeshQuality::Place& place : quality.worst) report.worst.push_back({place.sicn, place.center});
+  if (mesh.is_curved()) report.least_curved_sicn = least_curved_sicn(mesh);
+  const std::vector<double> volumes =
+      mesh.is_curved() ? curved_volumes_of_regions(mesh) : volumes_of_regions(mesh);
+  report.meshed_porosity = volumes.front() / report.domain_volume;
+  for (const std::string& name : groups.volumes) report.groups.push_back({.name = name});
+  for (std::size_t r = 0; r < volumes.size(); ++r)
+    report.groups[groups.volume_of_region[r]].volume += volumes[r];
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    ++report.groups[groups.volume_of(mesh, t)].tetrahedra;
+}
+
+/// The mesh, with what it is like so far.
+VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
+                   MeshReport& report) {
+  const Stopwatch watch;
+  monitor.report({"surface", -1, "points on spheres, necks and walls"});
+  const Solids solids = solids_of(
+      packing.spheres, packing.domain,
+      {.contact = options.contact, .gap = options.gap, .bridge_radius = options.bridge_radius}, monitor);
+  const ConformingSurface surface = conforming_surface(
+      solids, {.sphere_edge = options.sphere_edge, .neck_edge = options.neck_edge, .solids = options.solids},
+      monitor);
+  take_surface(surface, report);
+  report.parts.push_back({"surface", watch.seconds()});
+  FillReport filled;
+  VolumeMesh mesh = fill(surface, {}, filled, monitor);
+  report.parts.push_back({"fill", filled.seconds, filled.peak_bytes});
+  report.parts.push_back({"improve", filled.seconds_improving});
+  if (options.order == 2) {
+    const Stopwatch curving;
+    make_second_order(mesh, solids.spheres, solids.domain);
+    report.parts.push_back({"second order", curving.seconds()});
+  }
+  return mesh;
+}
+
+std::vector<std::string> names_of_files(const MeshWriter& writer, const fs::path& name) {
+  std::vector<std::string> names{name.string()};
+  names.insert(names.end(), writer.others.begin(), writer.others.end());
+  if (!writer.beside.empty()) names.push_back(name.stem().string() + std::string(writer.beside));
+  return names;
+}
+
+}  // namespace
+
+std::vector<MeshFormat> mesh_formats() {
+  std::vector<MeshFormat> all;
+  for (const MeshWriter& writer : mesh_writers()) all.push_back(writer.format);
+  return all;
+}
+
+void require_mesh_format(const MeshFileOptions& options, int dimension) {
+  const MeshFormat& format = mesh_writer_of(options.format).format;
+  if (dimension != 3) refuse("meshes are made of packings of three dimensions");
+  require_between(options.sphere_edge, 1, "‹mesh size›");
+  require_between(options.neck_edge, 1, "‹neck size›");
+  require_between(options.gap, 1, "‹gap›");
+  require_between(options.bridge_radius, 1, "‹bridge radius›");
+  if (options.order != 1 && options.order != 2) refuse("elements are of order 1 or 2");
+  if (options.order > format.largest_order)
+    refuse(fmt::format("the format {} has no elements of second order", format.name));
+}
+
+MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& options, const fs::path& named,
+                           const Monitor& monitor) {
+  require_mesh_format(options, packing.spheres.dimension());
+  const MeshWriter& writer = mesh_writer_of(options.format);
+  const fs::path name = named.filename(), folder = folder_of(named);
+  if (name.empty() || name == "." || name == "..")
+    throw Error(ErrorCode::cannot_write, "is a folder; give the name of a file in it", {named.string()});
+  require_free(folder, names_of_files(writer, name));
+  if (packing.spheres.empty()) refuse("there are no spheres to mesh around");
+  MeshedPacking meshed;
+  MeshReport& report = meshed.report;
+  report.spheres = packing.spheres.size();
+  report.domain_volume = volume_of(packing.domain);
+  const VolumeMesh mesh = mesh_of(packing, options, monitor, report);
+  const MeshGroups groups = groups_of(mesh, packing.domain);
+  const Stopwatch writing;
+  monitor.report({"write", -1, options.format});
+  take_mesh(mesh, groups, report);
+  StagedFolder staged(folder);
+  const std::string title = fmt::format("bernal {}: mesh of {} spheres in a {}", text_of(this_program()),
+                                        packing.spheres.size(), name_of(packing.domain));
+  meshed.note = writer.write(
+      {.mesh = mesh, .groups = groups, .name = name, .title = title, .unit = name_of(packing.scene.unit)},
+      staged);
+  meshed.files = staged.publish();
+  for (fs::path& path : meshed.files) path = path.lexically_normal();
+  report.parts.push_back({"write", writing.seconds()});
+  return meshed;
+}
+
+}  // namespace bernal

@@ -1,0 +1,43 @@
+#include <nlohmann/json.hpp>
+
+#include "bernal/mesh_files/mesh_packing.hpp"
+
+namespace bernal {
+
+std::string mesh_report_as_json(const Packing& packing, const MeshReport& report) {
+  using Json = nlohmann::ordered_json;
+  const auto place = [](const Vector<3>& p) { return Json{p[0], p[1], p[2]}; };
+  Json json{{"unit", name_of(packing.scene.unit)},
+            {"spheres", report.spheres},
+            {"necks", report.necks},
+            {"shrunk_necks", report.shrunk_necks},
+            {"triangles", report.triangles},
+            {"least_edge", report.least_edge},
+            {"least_triangle_angle", report.least_triangle_angle},
+            {"place_of_least_angle", place(report.place_of_least_angle)},
+            {"tetrahedra", report.tetrahedra},
+            {"nodes", report.nodes},
+            {"least_sicn", report.least_sicn},
+            {"mean_sicn", report.mean_sicn},
+            {"promised_sicn", MeshReport::promised_sicn},
+            {"least_dihedral_angle", report.least_angle},
+            {"largest_dihedral_angle", report.largest_angle},
+            {"histogram", report.histogram},
+            {"domain_volume", report.domain_volume},
+            {"porosity", report.porosity},
+            {"meshed_porosity", report.meshed_porosity},
+            {"contact_area", report.contact_area}};
+  json["least_curved_sicn"] = report.least_curved_sicn ? Json(*report.least_curved_sicn) : Json();
+  for (const char* list : {"worst", "groups", "parts"}) json[list] = Json::array();
+  for (const MeshReport::Place& at : report.worst)
+    json["worst"].push_back({{"sicn", at.sicn}, {"center", place(at.center)}});
+  for (const MeshReport::Group& group : report.groups)
+    json["groups"].push_back(
+        {{"name", group.name}, {"volume", group.volume}, {"tetrahedra", group.tetrahedra}});
+  for (const MeshReport::Part& part : report.parts)
+    json["parts"].push_back(
+        {{"name", part.name}, {"seconds", part.seconds}, {"peak_bytes", part.peak_bytes}});
+  return json.dump(2) + "\n";
+}
+
+}  // namespace bernal

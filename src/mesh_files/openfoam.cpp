@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "bernal/core/error.hpp"
+#include "formats/text_file.hpp"
+#include "mesh_files/mesh_file.hpp"
+#include "mesh_files/poly_mesh.hpp"
+
+namespace bernal {
+namespace {
+
+void add_header(TextFile& out, const MeshToWrite& file, std::string_view kind, std::string_view name,
+                const std::string& note = {}) {
+  out.add("// ", file.title, "; lengths in ", file.unit,
+          "\nFoamFile\n{\n    version     2.0;\n    format      "
+          "ascii;\n    class       ",
+          kind, ";\n");
+  if (!note.empty()) out.add("    note        \"", note, "\";\n");
+  out.add("    location    \"constant/polyMesh\";\n    object      ", name, ";\n}\n");
+}
+
+template <class Values, class Add>
+void write_list(const MeshToWrite& file, StagedFolder& staged, std::string_view kind, const std::string& name,
+                const Values& values, const std::string& note, const Add& add) {
+  TextFile out(staged.add("constant/polyMesh/" + name));
+  add_header(out, file, kind, name, note);
+  out.add(values.size(), "\n(\n");
+  for (const auto& value : values) add(out, value);
+  out.add(")\n");
+  out.close();
+}
+
+void write_boundary(const MeshToWrite& file, const PolyMesh& poly, StagedFolder& staged) {
+  write_list(file, staged, "polyBoundaryMesh", "boundary", poly.patches, {},
+             [](TextFile& out, const PolyMesh::Patch& patch) {
+               out.add("    ", patch.name, "\n    {\n        type            ", patch.type, ";\n");
+               if (!patch.neighbour.empty())
+                 out.add("        neighbourPatch  ", patch.neighbour,
+                         ";\n        transform       "
+                         "translational;\n        "
+                         "separationVector (",
+                         patch.separation[0], ' ', patch.separation[1], ' ', patch.separation[2],
+                         ");\n        matchTolerance  0.0001;\n");
+               out.add("        nFaces          ", patch.count, ";\n        startFace       ", patch.first,
+                       ";\n    }\n");
+             });
+}
+
+void write_zones(const MeshToWrite& file, StagedFolder& staged) {
+  const VolumeMesh& mesh = file.mesh;
+  const auto cells = by_group(mesh.tetrahedra.size(), file.groups.volumes.size(),
+                              [&](std::size_t t) { return file.groups.volume_of(mesh, t); });
+  std::vector<std::size_t> zones(cells.size());
+  for (std::size_t v = 0; v < zones.size(); ++v) zones[v] = v;
+  write_list(file, staged, "regIOobject", "cellZones", zones, {}, [&](TextFile& out, std::size_t v) {
+    out.add("    ", file.groups.volumes[v],
+            "\n    {\n        type            cellZone;\n        cellLabels  "
+            "    List<label>\n",
+            cells[v].size(), "\n(\n");
+    for (const std::uint32_t cell : cells[v]) out.add(cell, "\n");
+    out.add(");\n    }\n");
+  });
+}
+
+constexpr std::string_view control = R"(FoamFile
+{
+    version     2.0;
+    format      ascii;
+    class       dictionary;
+    object      controlDict;
+}
+application     checkMesh;
+startFrom       startTime;
+startTime       0;
+stopAt          endTime;
+endTime         1;
+deltaT          1;
+writeControl    timeStep;
+writeInterval   1;
+writeFormat     ascii;
+writePrecision  10;
+)";
+
+std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& staged) {
+  const VolumeMesh& mesh = file.mesh;
+  const PolyMesh poly = poly_mesh_of(mesh, file.groups);
+  write_list(file, staged, "vectorField", "points", mesh.vertices, {},
+             [](TextFile& out, const Vector<3>& p) { out.add('(', p[0], ' ', p[1], ' ', p[2], ")\n"); });
+  write_list(file, staged, "faceList", "faces", poly.faces, {}, [](TextFile& out, const FaceCorners& face) {
+    out.add("3(", face[0], ' ', face[1], ' ', face[2], ")\n");
+  });
+  const std::string note =
+      fmt::format("nPoints: {} nCells: {} nFaces: {} nInternalFaces: {}", mesh.vertices.size(),
+                  mesh.tetrahedra.size(), poly.faces.size(), poly.neighbour.size());
+  const auto add_label = [](TextFile& out, std::uint32_t label) { out.add(label, "\n"); };
+  write_list(file, staged, "labelList", "owner", poly.owner, note, add_label);
+  write_list(file, staged, "labelList", "neighbour", poly.neighbour, note, add_label);
+  write_boundary(file, poly, staged);
+  write_zones(file, staged);
+  staged.write("system/controlDict", control);
+  staged.write(file.name.string(), "");
+  return fmt::format(
+      "constant/polyMesh with {} faces, {} of them inside, {} patches and {} cell zones; lengths in {}",
+      poly.faces.size(), poly.neighbour.size(), poly.patches.size(), file.groups.volumes.size(), file.unit);
+}
+
+}  // namespace
+
+MeshWriter openfoam_of_mesh() {
+  return {.format = {"openfoam",
+                     "OpenFOAM: constant/polyMesh beside the file, a patch a surface, cyclic ones at ends of "
+                     "periods, a cell zone a region",
+                     ".foam", 1},
+          .others = {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
+                     "constant/polyMesh/neighbour", "constant/polyMesh/boundary",
+                     "constant/polyMesh/cellZones", "system/controlDict"},
+          .write = write_mesh_for_openfoam};
+}
+
+}  // namespace bernal

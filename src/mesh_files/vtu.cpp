@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include "cells/vtk_appended.hpp"
+#include "files/output_file.hpp"
+#include "mesh_files/mesh_file.hpp"
+#include "meshes/mesh_quality.hpp"
+
+namespace bernal {
+namespace {
+
+std::string write_mesh_as_vtu(const MeshToWrite& file, StagedFolder& staged) {
+  constexpr std::uint8_t tetrahedron_type = 10, quadratic_type = 24;
+  const VolumeMesh& mesh = file.mesh;
+  const std::size_t cells = mesh.tetrahedra.size();
+  std::vector<double> points;
+  for (std::size_t i = 0; i < mesh.node_count(); ++i)
+    for (int k = 0; k < 3; ++k) points.push_back(mesh.node(i)[k]);
+  std::vector<std::int64_t> nodes, ends;
+  std::vector<std::int32_t> region, sphere;
+  std::vector<float> quality;
+  for (std::size_t t = 0; t < cells; ++t) {
+    const TetrahedronCorners& c = mesh.tetrahedra[t];
+    nodes.insert(nodes.end(), c.begin(), c.end());
+    if (mesh.is_curved())
+      nodes.insert(nodes.end(), mesh.middles_of_tetrahedron[t].begin(), mesh.middles_of_tetrahedron[t].end());
+    ends.push_back(static_cast<std::int64_t>(nodes.size()));
+    region.push_back(static_cast<std::int32_t>(file.groups.volume_of(mesh, t)));
+    const auto& of = mesh.regions[mesh.region[t]].sphere;
+    sphere.push_back(of ? static_cast<std::int32_t>(*of) : -1);
+    quality.push_back(static_cast<float>(
+        sicn(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]])));
+  }
+  VtkAppended data;
+  std::string text = fmt::format(R"(<?xml version="1.0"?>
+<!-- {}; lengths in {} -->
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+  <UnstructuredGrid>
+    <Piece NumberOfPoints="{}" NumberOfCells="{}">
+      <Points>
+)",
+                                 file.title, file.unit, mesh.node_count(), cells);
+  text += data.tag("Float64", "Points", points, 3) + "      </Points>\n      <Cells>\n";
+  text += data.tag("Int64", "connectivity", nodes);
+  text += data.tag("Int64", "offsets", ends);
+  text += data.tag("UInt8", "types",
+                   std::vector<std::uint8_t>(cells, mesh.is_curved() ? quadratic_type : tetrahedron_type));
+  text += "      </Cells>\n      <CellData Scalars=\"sicn\">\n";
+  text += data.tag("Int32", "region", region);
+  text += data.tag("Int32", "sphere", sphere);
+  text += data.tag("Float32", "sicn", quality);
+  text += "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n";
+  OutputFile out(staged.add(file.name.string()));
+  out.append(text);
+  data.append_to(out);
+  out.close();
+  std::string meaning;
+  for (std::size_t v = 0; v < file.groups.volumes.size(); ++v)
+    meaning += fmt::format("{}{} {}", v == 0 ? "" : ", ", v, file.groups.volumes[v]);
+  return fmt::format("tetrahedra with region ({}), sphere (-1: none) and sicn", meaning);
+}
+
+}  // namespace
+
+MeshWriter vtu_of_mesh() {
+  return {.format = {"vtu", "ParaView, VTK, meshio: tetrahedra, each with region, sphere and SICN", ".vtu"},
+          .write = write_mesh_as_vtu};
+}
+
+}  // namespace bernal
