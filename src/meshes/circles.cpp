@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "bernal/core/error.hpp"
 #include "meshes/surface_draft.hpp"
@@ -50,6 +51,11 @@ class Circles {
     for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
       for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c)
         if (draft_.pieces[p].circles[c].kind != Circle::Kind::neck) fill(p, c);
+    for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
+      for (std::size_t a = 0; a < draft_.pieces[p].circles.size(); ++a)
+        for (std::size_t b = 0; b < a; ++b)
+          if (const std::vector<std::uint32_t> ids = chord(p, b, a); !ids.empty())
+            draft_.pieces[p].chords.push_back({{b, a}, ids});
   }
 
  private:
@@ -87,11 +93,7 @@ class Circles {
         ((one.depth - c * other.depth) * one.normal + (other.depth - c * one.depth) * other.normal) / sine2;
     const double along = std::sqrt(std::max(0.0, piece.radius * piece.radius - foot.squaredNorm()));
     Vector<3> q = piece.center + foot + side * along * one.normal.cross(other.normal).normalized();
-    for (const Circle* end : {&one, &other})
-      if (end->kind == Circle::Kind::end)
-        q[end->face / 2] = std::abs(end->face % 2) == 0
-                               ? draft_.boundary.origin[end->face / 2]
-                               : draft_.boundary.origin[end->face / 2] + draft_.boundary.edges[end->face / 2];
+    put_on_ends(p, std::array{a, b}, q);
     return q;
   }
 
@@ -118,11 +120,127 @@ class Circles {
     const auto [entry, is_new] = corners_.try_emplace({p, a, b, side}, 0);
     if (is_new) {
       const Vector<3> q = crossing(p, a, b, side);
-      const bool is_end = one.kind == Circle::Kind::end || other.kind == Circle::Kind::end;
       const double size = size_at(p, q);
-      entry->second = is_end ? draft_.vertex_at(q, size) : draft_.add_vertex(q, size);
+      entry->second = add(p, std::array{a, b}, q, size);
     }
     return entry->second;
+  }
+
+  /// What `of` is, a circle of a piece, at the image one period before.
+  std::size_t circle_before(std::uint32_t p, std::uint32_t lower, std::size_t of, int face) const {
+    const Circle& wanted = draft_.pieces[p].circles[of];
+    if (wanted.kind == Circle::Kind::end)
+      return circle_at(lower, wanted.face == face ? face - 1 : wanted.face);
+    return contact_like(lower, wanted);
+  }
+
+  /// An upper end among circles of a piece, or none.
+  int upper_among(std::uint32_t p, std::span<const std::size_t> circles) const {
+    for (const std::size_t c : circles)
+      if (const Circle& circle = draft_.pieces[p].circles[c];
+          circle.kind == Circle::Kind::end && circle.face % 2 == 1)
+        return circle.face;
+    return -1;
+  }
+
+  void put_on_ends(std::uint32_t p, std::span<const std::size_t> circles, Vector<3>& q) const {
+    for (const std::size_t c : circles)
+      if (const Circle& circle = draft_.pieces[p].circles[c]; circle.kind == Circle::Kind::end)
+        q[circle.face / 2] = draft_.boundary.origin[circle.face / 2] +
+                             (circle.face % 2 == 1 ? draft_.boundary.edges[circle.face / 2] : 0);
+  }
+
+  bool has_end(std::uint32_t p, std::span<const std::size_t> circles) const {
+    return std::ranges::any_of(
+        circles, [&](std::size_t c) { return draft_.pieces[p].circles[c].kind == Circle::Kind::end; });
+  }
+
+  std::uint32_t add(std::uint32_t p, std::span<const std::size_t> circles, Vector<3> q, double size) {
+    put_on_ends(p, circles, q);
+    return has_end(p, circles) ? draft_.vertex_at(q, size) : draft_.add_vertex(q, size);
+  }
+
+  /// The vertex inside a ball where three of its planes meet.
+  std::uint32_t triple(std::uint32_t p, std::array<std::size_t, 3> of) {
+    if (const int face = upper_among(p, of); face >= 0) {
+      const std::uint32_t lower = piece_moved(p, face / 2, -1);
+      std::array<std::size_t, 3> there;
+      for (std::size_t k = 0; k < 3; ++k) there[k] = circle_before(p, lower, of[k], face);
+      return draft_.lifted(face / 2, triple(lower, there));
+    }
+    std::ranges::sort(of);
+    const auto [entry, is_new] = triples_.try_emplace({p, of[0], of[1], of[2]}, 0);
+    if (is_new) {
+      const auto& circles = draft_.pieces[p].circles;
+      Eigen::Matrix3d normals;
+      Vector<3> depths;
+      for (int k = 0; k < 3; ++k) {
+        const Circle& circle = circles[of[static_cast<std::size_t>(k)]];
+        normals.row(k) = circle.normal.transpose();
+        depths[k] = circle.depth;
+      }
+      const Vector<3> q = draft_.pieces[p].piece.center + normals.inverse() * depths;
+      entry->second = add(p, of, q, chord_size(p));
+    }
+    return entry->second;
+  }
+
+  double chord_size(std::uint32_t p) const {
+    return draft_.options.sphere_edge * draft_.pieces[p].piece.radius;
+  }
+
+  /// Vertices along the part of a line of two planes that is inside a piece; none if there is no such part,
+  /// or no flat face needs it.
+  std::vector<std::uint32_t> chord(std::uint32_t p, std::size_t a, std::size_t b) {
+    const std::array<std::size_t, 2> both = {a, b};
+    const auto& circles = draft_.pieces[p].circles;
+    const Circle &one = circles[a], &other = circles[b];
+    if (one.kind == Circle::Kind::neck || other.kind == Circle::Kind::neck) return {};
+    if (!draft_.options.solids && one.kind == Circle::Kind::end && other.kind == Circle::Kind::end) return {};
+    const double c = one.normal.dot(other.normal), sine2 = 1 - c * c;
+    if (sine2 < 1e-12) return {};
+    if (const int face = upper_among(p, both); face >= 0) {
+      const std::uint32_t lower = piece_moved(p, face / 2, -1);
+      std::vector<std::uint32_t> ids =
+          chord(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face));
+      for (std::uint32_t& id : ids) id = draft_.lifted(face / 2, id);
+      return ids;
+    }
+    if (a > b) return chord(p, b, a);
+    if (const auto found = chords_.find({p, a, b}); found != chords_.end()) return found->second;
+    const Piece& piece = draft_.pieces[p].piece;
+    const Vector<3> foot =
+        ((one.depth - c * other.depth) * one.normal + (other.depth - c * one.depth) * other.normal) / sine2;
+    const double squared = piece.radius * piece.radius - foot.squaredNorm();
+    if (!(squared > 0)) return {};
+    const Vector<3> along = one.normal.cross(other.normal).normalized();
+    std::array<double, 2> ends = {-std::sqrt(squared), std::sqrt(squared)};
+    std::array<std::size_t, 2> by = {a, a};
+    for (std::size_t k = 0; k < circles.size(); ++k) {
+      if (k == a || k == b || circles[k].kind == Circle::Kind::neck) continue;
+      const double rise = circles[k].normal.dot(along), left = circles[k].depth - circles[k].normal.dot(foot);
+      if (rise > 0 && left / rise < ends[1]) {
+        ends[1] = left / rise;
+        by[1] = k;
+      } else if (rise < 0 && left / rise > ends[0]) {
+        ends[0] = left / rise;
+        by[0] = k;
+      } else if (rise == 0 && left < 0) {
+        return {};
+      }
+    }
+    if (!(ends[0] < ends[1])) return {};
+    const auto at = [&](double t) { return Vector<3>(piece.center + foot + t * along); };
+    const auto end = [&](std::size_t e) {
+      return by[e] == a ? corner(p, a, b, at(ends[e])) : triple(p, {a, b, by[e]});
+    };
+    std::vector<std::uint32_t>& ids = chords_[{p, a, b}];
+    ids.push_back(end(0));
+    const double length = ends[1] - ends[0];
+    for (const double share : spaced(length, 1, [&](double) { return chord_size(p); }))
+      ids.push_back(add(p, both, at(ends[0] + share * length), chord_size(p)));
+    ids.push_back(end(1));
+    return ids;
   }
 
   std::size_t contact_like(std::uint32_t p, const Circle& wanted) const {
@@ -230,6 +348,8 @@ class Circles {
   SurfaceDraft& draft_;
   std::map<std::pair<std::uint32_t, std::array<int, 3>>, std::uint32_t> numbers_;
   std::map<std::tuple<std::uint32_t, std::size_t, std::size_t, int>, std::uint32_t> corners_;
+  std::map<std::array<std::size_t, 4>, std::uint32_t> triples_;
+  std::map<std::tuple<std::uint32_t, std::size_t, std::size_t>, std::vector<std::uint32_t>> chords_;
   std::vector<std::vector<NearBall>> near_;
   std::vector<char> has_near_;
 };

@@ -1,6 +1,7 @@
 #include "meshes/conforming_surface.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,30 @@ void require_options(const SurfaceMeshOptions& options) {
         ErrorCode::bad_argument,
         "edges of a mesh are from 0.01 to 1 on spheres and from 0.005 to 1 at bridges, in radii, and at "
         "least 0.1 widths of gaps");
+}
+
+/// Vertices that no triangle has are left out: corners of a box inside of spheres.
+void leave_out_unused(ConformingSurface& made) {
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> number(made.vertices.size(), unused);
+  for (const FaceCorners& t : made.triangles)
+    for (const std::uint32_t c : t) number[c] = 0;
+  std::uint32_t used = 0;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == unused) continue;
+    number[v] = used;
+    made.vertices[used] = made.vertices[v];
+    made.size[used++] = made.size[v];
+  }
+  made.vertices.resize(used);
+  made.size.resize(used);
+  for (FaceCorners& t : made.triangles)
+    for (std::uint32_t& c : t) c = number[c];
+  for (auto& pairs : made.periodic) {
+    std::erase_if(pairs,
+                  [&](const auto& pair) { return number[pair[0]] == unused || number[pair[1]] == unused; });
+    for (auto& pair : pairs) pair = {number[pair[0]], number[pair[1]]};
+  }
 }
 
 }  // namespace
@@ -44,6 +69,7 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
   }
   add_regions(draft);
   state(draft);
+  leave_out_unused(draft.made);
   return std::move(draft.made);
 }
 

@@ -49,9 +49,9 @@ struct SurfaceStatement {
   double least_edge = 0, least_angle = 0;  ///< of all triangles; the angle in degrees
   double least_angle_off_necks = 0;        ///< of all triangles that do not lie on necks, in degrees
   Vector<3> place_of_least_angle = Vector<3>::Zero();
-  std::size_t shrunk_necks = 0;    ///< whose radius is smaller than asked for, so that others stay clear
-  double largest_shrink = 0;       ///< over the radius asked for
-  double fluid_volume = 0;         ///< in closed form
+  std::size_t shrunk_necks = 0;  ///< whose radius is smaller than asked for, so that others stay clear
+  double largest_shrink = 0;     ///< over the radius asked for
+  double fluid_volume = 0;  ///< in closed form; where caps of a sphere meet, what they share is counted twice
   double meshed_fluid_volume = 0;  ///< between the triangles
   double contact_area = 0;         ///< cross-sections of necks, flat faces of caps
 };

@@ -1,11 +1,103 @@
-// Flat faces of pieces: of caps, and with solids at the ends of periods and where necks begin.
-#include <algorithm>
-#include <cmath>
+// Flat faces of pieces: of caps, and with solids at the ends of periods and where necks begin or end.
+#include <map>
 
 #include "meshes/planar_part.hpp"
 
 namespace bernal {
+namespace {
 
-void mesh_flat_faces(SurfaceDraft& draft) { (void)draft; }
+class FlatFaces {
+ public:
+  explicit FlatFaces(SurfaceDraft& draft) : draft_(draft) {}
+
+  void mesh() {
+    for (const bool upper : {false, true})
+      for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
+        for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c) {
+          const Circle& circle = draft_.pieces[p].circles[c];
+          if (circle.chains.empty() || (circle.kind == Circle::Kind::end && circle.face % 2 == 1) != upper)
+            continue;
+          if (circle.kind == Circle::Kind::contact || draft_.options.solids) make_face(p, c);
+        }
+    if (draft_.options.solids)
+      for (std::uint32_t n = 0; n < draft_.necks.size(); ++n)
+        if (draft_.necks[n].wall) make_foot(n);
+  }
+
+ private:
+  /// Inside a flat face sizes are those of spheres; smaller ones follow from the edges around it.
+  std::function<double(const Vector<3>&)> size_in(std::uint32_t p) const {
+    return [size = draft_.options.sphere_edge * draft_.pieces[p].piece.radius](const Vector<3>&) {
+      return size;
+    };
+  }
+
+  PlanarPart part_of(const Circle& circle, const Vector<3>& center) {
+    const Vector<3> u = circle.normal.unitOrthogonal(), v = circle.normal.cross(u);
+    const Vector<3> origin = center + circle.depth * circle.normal;
+    const int axis = circle.kind == Circle::Kind::end ? circle.face / 2 : -1;
+    const double at = axis < 0 ? 0 : draft_.boundary.origin[axis];
+    return {draft_,
+            [=](const Vector<3>& p) { return Vector<3>((p - origin).dot(u), (p - origin).dot(v), 0); },
+            [=](const Vector<3>& p) {
+              Vector<3> q = origin + p[0] * u + p[1] * v;
+              if (axis >= 0) q[axis] = at;
+              return q;
+            }};
+  }
+
+  void make_face(std::uint32_t p, std::size_t c) {
+    const DraftPiece& piece = draft_.pieces[p];
+    const Circle& circle = piece.circles[c];
+    SurfacePatch patch{SurfacePatch::Kind::cut_face, piece.piece.sphere, {draft_.region_of_piece(p), 0}};
+    if (circle.kind == Circle::Kind::neck) patch.regions[1] = draft_.region_of_neck(circle.neck);
+    if (circle.kind == Circle::Kind::end) {
+      patch.kind = SurfacePatch::Kind::period_end;
+      patch.index = static_cast<std::uint32_t>(circle.face);
+      patch.regions[1] = SurfacePatch::nothing;
+    }
+    const std::uint32_t number = draft_.add_patch(patch);
+    if (circle.kind == Circle::Kind::end && circle.face % 2 == 1) {
+      const int axis = circle.face / 2;
+      std::array<int, 3> image = piece.piece.image;
+      --image[static_cast<std::size_t>(axis)];
+      for (const FaceCorners& t : lower_.at({piece.piece.sphere, image, axis}))
+        draft_.add_triangle(number, draft_.lifted(axis, t[0]), draft_.lifted(axis, t[2]),
+                            draft_.lifted(axis, t[1]));
+      return;
+    }
+    PlanarPart part = part_of(circle, piece.piece.center);
+    for (const auto& chain : circle.chains) part.add_chain(chain, circle.is_whole);
+    for (const Chord& chord : piece.chords)
+      if (chord.circles[0] == c || chord.circles[1] == c) part.add_chain(chord.ids, false);
+    part.mesh(number, false, size_in(p));
+    if (circle.kind == Circle::Kind::end)
+      lower_[{piece.piece.sphere, piece.piece.image, circle.face / 2}] = part.triangles();
+  }
+
+  /// Where a neck stands on a wall.
+  void make_foot(std::uint32_t n) {
+    const DraftNeck neck = draft_.necks[n];
+    const Vector<3> center = draft_.pieces[neck.pieces[0]].piece.center,
+                    around = neck.axis.cross(neck.across);
+    PlanarPart part(
+        draft_,
+        [&](const Vector<3>& p) {
+          return Vector<3>((p - center).dot(neck.across), (p - center).dot(around), 0);
+        },
+        [&](const Vector<3>& p) { return foot_of(draft_, neck, p[0] * neck.across + p[1] * around); });
+    part.add_chain(neck.rims[1], true);
+    part.mesh(draft_.add_patch(
+                  {SurfacePatch::Kind::wall, *neck.wall, {draft_.region_of_neck(n), SurfacePatch::nothing}}),
+              false, size_in(neck.pieces[0]));
+  }
+
+  SurfaceDraft& draft_;
+  std::map<std::tuple<std::uint32_t, std::array<int, 3>, int>, std::vector<FaceCorners>> lower_;
+};
+
+}  // namespace
+
+void mesh_flat_faces(SurfaceDraft& draft) { FlatFaces(draft).mesh(); }
 
 }  // namespace bernal

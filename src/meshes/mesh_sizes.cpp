@@ -52,13 +52,19 @@ std::vector<NearBall> MeshSizes::near(const Vector<3>& center, std::uint32_t sph
   grid_.for_each_near(boundary_.wrap(center), r + largest_ + reach, [&](std::uint32_t j, const Vector<3>& d) {
     const double distance = d.norm(), rj = spheres_.r[j], gap = distance - r - rj;
     if (gap > reach || distance < 1e-9 * r) return;
-    const bool is_bridged = has_necks_ && gap < solids_.contacts.gap * (r + rj);
-    found.push_back({center + d, rj, is_bridged ? options_.neck_edge * std::min(r, rj) : 0});
+    found.push_back({center + d, rj, floor_at(gap, r + rj, std::min(r, rj))});
   });
   std::ranges::sort(found, {}, [](const NearBall& b) {
     return std::array{b.center[0], b.center[1], b.center[2]};
   });
   return found;
+}
+
+double MeshSizes::floor_at(double gap, double scale, double least_radius) const {
+  if (!(gap < solids_.contacts.gap * scale)) return 0;
+  const ContactTreatment treatment = solids_.contacts.treatment;
+  if (treatment == ContactTreatment::bridge) return options_.neck_edge * least_radius;
+  return treatment == ContactTreatment::cap ? options_.per_gap * solids_.contacts.gap * scale : 0;
 }
 
 double MeshSizes::from_walls(const Vector<3>& p) const {
@@ -92,8 +98,7 @@ double MeshSizes::on_sphere(const Vector<3>& p, const Vector<3>& center, double 
     size = std::min(size, std::max(options_.per_gap * ((p - ball.center).norm() - ball.radius), ball.floor));
   const double gap = from_walls(center) - radius;
   if (gap < size / options_.per_gap) {
-    const double floor = has_necks_ && gap < solids_.contacts.gap * radius ? options_.neck_edge * radius : 0;
-    size = std::min(size, std::max(options_.per_gap * from_walls(p), floor));
+    size = std::min(size, std::max(options_.per_gap * from_walls(p), floor_at(gap, radius, radius)));
   }
   if (!is_cut_at_end) size = std::min(size, options_.per_gap * from_ends(p));
   // Contacts that nobody treated have no width.
@@ -112,11 +117,10 @@ double MeshSizes::on_wall(const Vector<3>& p, const Vector<3>& normal, bool is_e
       const double rim = std::sqrt(r * r - along * along);
       size = std::min(size, std::min(options_.sphere_edge * r, std::numbers::pi / 4 * rim) +
                                 growth * std::abs(beside - rim));
-    } else if (has_necks_ && !is_end && gap < solids_.contacts.gap * r) {
-      size = std::min({size, options_.neck_edge * r + growth * beside,
-                       std::max(options_.per_gap * from, options_.neck_edge * r)});
     } else {
-      size = std::min(size, options_.per_gap * from);
+      const double floor = is_end ? 0 : floor_at(gap, r, r);
+      if (floor > 0 && has_necks_) size = std::min(size, floor + growth * beside);
+      size = std::min(size, std::max(options_.per_gap * from, floor));
     }
   });
   return std::max(size, 1e-4 * largest_);

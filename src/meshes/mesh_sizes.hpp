@@ -39,10 +39,13 @@ class MeshSizes {
   /// Edges where a neck begins, and how many make up its circle. `height`: of the neck between its circles.
   std::size_t neck_count(double radius, double least_sphere, double height) const;
 
-  bool has_necks() const { return has_necks_; }
   double largest_radius() const { return largest_; }
 
  private:
+  /// No edges are shorter for the sake of a contact with this gap between surfaces; 0 if it is not treated.
+  /// `scale`: what gaps are shares of.
+  double floor_at(double gap, double scale, double least_radius) const;
+
   const Solids& solids_;
   SurfaceMeshOptions options_;
   Boundary<3> boundary_;

@@ -205,7 +205,7 @@ class Necks {
       other_depth = std::sqrt(r * r - a * a);
     }
     const double height = neck.distance - depth - other_depth;
-    neck.count = draft_.sizes.neck_count(a, least_radius(neck), height);
+    neck.count = draft_.sizes.neck_count(a, least_radius(neck), height - least_height_less(neck));
     const double edge = 2 * pi * a / static_cast<double>(neck.count);
     neck.rows = static_cast<std::size_t>(std::max(1.0, std::nearbyint(height / (0.87 * edge))));
     const Vector<3> around = neck.axis.cross(neck.across);
@@ -219,7 +219,7 @@ class Necks {
             e == 0 ? Vector<3>(first.center + depth * neck.axis + beside)
             : !neck.wall
                 ? Vector<3>(draft_.pieces[neck.pieces[1]].piece.center - other_depth * neck.axis + beside)
-                : foot(neck, first.center, beside);
+                : foot_of(draft_, neck, beside);
         neck.rims[e].push_back(draft_.add_vertex(p, edge));
       }
     neck.volume =
@@ -241,17 +241,12 @@ class Necks {
     }
   }
 
-  Vector<3> foot(const DraftNeck& neck, const Vector<3>& center, const Vector<3>& beside) const {
-    Vector<3> p = center + beside + neck.distance * neck.axis;
-    if (const auto* box = std::get_if<Box>(&solids_.domain)) {
-      const int k = static_cast<int>(*neck.wall / 2);
-      p[k] = *neck.wall % 2 == 0 ? box->corner[k] : box->corner[k] + box->size[k];
-    } else if (const auto& cylinder = std::get<Cylinder>(solids_.domain); *neck.wall == 0) {
-      // Where lines along the neck's axis, which is a radius of the cylinder, meet its side.
-      const double x = beside.dot(cylinder.axis.normalized().cross(neck.axis));
-      p += (std::sqrt(cylinder.radius * cylinder.radius - x * x) - cylinder.radius) * neck.axis;
-    }
-    return p;
+  /// By how much a neck to a cylinder's side is lower beside its middle.
+  double least_height_less(const DraftNeck& neck) const {
+    const auto* cylinder = std::get_if<Cylinder>(&solids_.domain);
+    if (cylinder == nullptr || neck.wall != 0) return 0;
+    const double a = neck.radius, radius = cylinder->radius;
+    return a * a / (radius + std::sqrt(radius * radius - a * a));
   }
 
   /// What a neck to a cylinder's side lacks between its tangent plane and the side: the integral over the
@@ -297,6 +292,19 @@ class Necks {
 };
 
 }  // namespace
+
+Vector<3> foot_of(const SurfaceDraft& draft, const DraftNeck& neck, const Vector<3>& beside) {
+  Vector<3> p = draft.pieces[neck.pieces[0]].piece.center + beside + neck.distance * neck.axis;
+  if (const auto* box = std::get_if<Box>(&draft.solids.domain)) {
+    const int k = static_cast<int>(*neck.wall / 2);
+    p[k] = *neck.wall % 2 == 0 ? box->corner[k] : box->corner[k] + box->size[k];
+  } else if (const auto& cylinder = std::get<Cylinder>(draft.solids.domain); *neck.wall == 0) {
+    // Where lines along the neck's axis, which is a radius of the cylinder, meet its side.
+    const double x = beside.dot(cylinder.axis.normalized().cross(neck.axis));
+    p += (std::sqrt(cylinder.radius * cylinder.radius - x * x) - cylinder.radius) * neck.axis;
+  }
+  return p;
+}
 
 void add_necks(SurfaceDraft& draft) { Necks(draft).make(); }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double largest_circumradius = 0.58;
 constexpr double least_sine = 0.4540;  // 27 degrees
 /// No triangles are made smaller than that for their angles' sake, of the size at the place.
-constexpr double smallest_for_angles = 0.2;
+constexpr double smallest_for_angles = 0.02;
 
 struct Waiting {
   double badness;
@@ -42,7 +42,7 @@ class Mesher {
     if (!delaunay_.bind(edges)) fail("an edge of the boundary is crossed");
     label();
     refine();
-    if (!(patch_.period > 0)) smooth();
+    smooth();
     return collected();
   }
 
@@ -243,15 +243,19 @@ class Mesher {
   void smooth() {
     constexpr int rounds = 4;
     const std::size_t n = delaunay_.points().size();
+    std::vector<std::array<std::uint32_t, 2>> copies;  // in strips, of points by what they are copies of
+    for (std::uint32_t p = 0; p < n; ++p)
+      if (shift_[p] != 0 && base_[p] >= fixed_) copies.push_back({base_[p], p});
+    std::ranges::sort(copies);
     for (int round = 0; round < rounds; ++round) {
       std::vector<std::vector<std::uint32_t>> stars(n);
       for (std::uint32_t f = 0; f < delaunay_.faces().size(); ++f) {
         const Delaunay::Face& face = delaunay_.faces()[f];
         if (!face.is_alive || !delaunay_.is_finite(face)) continue;
         for (const std::uint32_t c : face.corners)
-          if (c >= fixed_) stars[c].push_back(f);
+          if (base_[c] >= fixed_ && shift_[c] == 0) stars[c].push_back(f);
       }
-      for (auto p = static_cast<std::uint32_t>(fixed_); p < n; ++p) {
+      for (std::uint32_t p = 0; p < n; ++p) {
         if (stars[p].empty() || !inside_[stars[p].front()]) continue;
         Vector<3> sum = Vector<3>::Zero();
         for (const std::uint32_t f : stars[p])
@@ -259,8 +263,13 @@ class Mesher {
             if (c != p) sum += delaunay_.points()[c];
         sum /= 2 * static_cast<double>(stars[p].size());
         if (on_sphere()) sum *= patch_.extent / sum.norm();
+        if (patch_.period > 0 && (sum[0] < 0 || sum[0] >= patch_.period)) continue;
         const Vector<3> before = delaunay_.points()[p];
-        if (star_angle(stars[p], p, sum) > star_angle(stars[p], p, before)) delaunay_.move(p, sum);
+        if (!(star_angle(stars[p], p, sum) > star_angle(stars[p], p, before))) continue;
+        delaunay_.move(p, sum);
+        for (auto c = std::ranges::lower_bound(copies, std::array{base_[p], 0u});
+             c != copies.end() && (*c)[0] == base_[p]; ++c)
+          delaunay_.move((*c)[1], sum + Vector<3>(shift_[(*c)[1]] * patch_.period, 0, 0));
       }
       delaunay_.restore();
     }

@@ -93,6 +93,12 @@ PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
     });
     if (is_free) patch.starts.push_back(p);
   }
+  if (patch.starts.empty()) {  // a small part of a sphere: a point in its middle
+    const Vector<3> p = r * (inner_point(part.piece) - center).normalized();
+    if (std::ranges::all_of(part.circles,
+                            [&](const Circle& circle) { return p.dot(circle.normal) < circle.depth; }))
+      patch.starts.push_back(p);
+  }
   PartMesh made{number.ids(), mesh_patch(patch), {}};
   for (Vector<3>& p : made.mesh.added) {
     made.sizes.push_back(patch.size(p));

@@ -48,19 +48,23 @@ Vector<3> point_in_fluid(const SurfaceDraft& draft) {
 
 }  // namespace
 
+Vector<3> inner_point(const Piece& piece) {
+  // The centre, moved behind each cut until it is well behind all of them.
+  Vector<3> point = piece.center;
+  for (int round = 0; round < 50; ++round)
+    for (const Cut& cut : piece.cuts) {
+      const double beyond = cut.keeps.normal.dot(point) - cut.keeps.offset;
+      const double room = piece.radius + cut.keeps.offset - cut.keeps.normal.dot(piece.center);
+      if (beyond > -0.2 * room) point -= (beyond + 0.3 * room) * cut.keeps.normal;
+    }
+  return point;
+}
+
 void add_regions(SurfaceDraft& draft) {
   draft.made.regions.push_back({"fluid", {}, point_in_fluid(draft)});
   if (!draft.options.solids) return;
   for (const DraftPiece& piece : draft.pieces) {
-    // The centre, or what cuts leave nearest to it: half-way from the cut to the far end of the ball.
-    Vector<3> seed = piece.piece.center;
-    for (int round = 0; round < 50; ++round)
-      for (const Cut& cut : piece.piece.cuts) {
-        const double beyond = cut.keeps.normal.dot(seed) - cut.keeps.offset;
-        const double room = piece.piece.radius + cut.keeps.offset - cut.keeps.normal.dot(piece.piece.center);
-        if (beyond > -0.2 * room) seed -= (beyond + 0.3 * room) * cut.keeps.normal;
-      }
-    draft.made.regions.push_back({"spheres", piece.piece.sphere, seed});
+    draft.made.regions.push_back({"spheres", piece.piece.sphere, inner_point(piece.piece)});
   }
   for (const DraftNeck& neck : draft.necks) {
     const Vector<3> from = draft.made.vertices[neck.rims[0][0]], to = draft.made.vertices[neck.rims[1][0]];
@@ -96,7 +100,11 @@ void state(SurfaceDraft& draft) {
   statement.least_angle_off_necks = off_necks * 180 / std::numbers::pi;
   statement.least_edge = edge;
   statement.meshed_fluid_volume = six / 6;
-  statement.fluid_volume = volume_of(draft.solids.domain) - volume_of_balls(draft.solids.spheres);
+  const ContactReport& contacts = draft.solids.contacts;
+  const bool is_capped = contacts.treatment == ContactTreatment::cap;
+  statement.fluid_volume = volume_of(draft.solids.domain) -
+                           (is_capped ? contacts.volume_after : volume_of_balls(draft.solids.spheres));
+  if (is_capped) statement.contact_area = contacts.contact_area;
   std::vector<char> counted(draft.necks.size(), 0);
   for (const DraftNeck& neck : draft.necks)
     if (!std::exchange(counted[neck.bond], 1)) statement.fluid_volume -= neck.volume;

@@ -28,9 +28,16 @@ struct Circle {
   bool is_whole = false;
 };
 
+/// Where the planes of two circles of a piece cross inside of it.
+struct Chord {
+  std::array<std::size_t, 2> circles;
+  std::vector<std::uint32_t> ids;
+};
+
 struct DraftPiece {
   Piece piece;
   std::vector<Circle> circles = {};
+  std::vector<Chord> chords = {};
 };
 
 /// A neck from a piece to another, or to a wall.
@@ -107,15 +114,19 @@ struct SurfaceDraft {
 void add_necks(SurfaceDraft&);
 /// The points of all other circles; those at opposite ends are the same but for the period.
 void add_circles(SurfaceDraft&);
-/// Triangles of necks, and of the discs in which they begin where solids are asked for.
+/// The point of a neck's wall that stands over a point of its section, given from its axis.
+Vector<3> foot_of(const SurfaceDraft&, const DraftNeck&, const Vector<3>& beside);
+/// Triangles of the sides of necks.
 void mesh_necks(SurfaceDraft&);
 /// Triangles of the spheres.
 void mesh_pieces(SurfaceDraft&, const Monitor&);
-/// Triangles of flat faces of caps and, with solids, of spheres at the ends of periods.
+/// Triangles of flat faces of caps and, with solids, of spheres at the ends of periods and of necks' ends.
 void mesh_flat_faces(SurfaceDraft&);
 /// Triangles of the walls and ends of periods.
 void mesh_box(SurfaceDraft&, const Box&);
 void mesh_cylinder(SurfaceDraft&, const Cylinder&);
+/// A point inside a piece and not near its cuts.
+Vector<3> inner_point(const Piece&);
 /// Regions with points inside.
 void add_regions(SurfaceDraft&);
 /// Angles, edges and volumes.

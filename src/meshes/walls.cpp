@@ -16,9 +16,16 @@ void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, 
                     PlanarPart& part) {
   if (is_end) {
     for (const DraftPiece& piece : draft.pieces)
-      for (const Circle& circle : piece.circles)
-        if (circle.kind == Circle::Kind::end && circle.face == static_cast<int>(face))
-          for (const auto& chain : circle.chains) part.add_chain(chain, circle.is_whole);
+      for (std::size_t c = 0; c < piece.circles.size(); ++c) {
+        const Circle& circle = piece.circles[c];
+        if (circle.kind != Circle::Kind::end || circle.face != static_cast<int>(face)) continue;
+        for (const auto& chain : circle.chains) part.add_chain(chain, circle.is_whole);
+        for (const Chord& chord : piece.chords) {  // where caps begin
+          if (chord.circles[0] != c && chord.circles[1] != c) continue;
+          const std::size_t other = chord.circles[0] == c ? chord.circles[1] : chord.circles[0];
+          if (piece.circles[other].kind == Circle::Kind::contact) part.add_chain(chord.ids, false);
+        }
+      }
     return;
   }
   for (const DraftNeck& neck : draft.necks) {

@@ -208,6 +208,7 @@ Plan plan_of_layer(const Plan& whole, const PlannedPart& part, const Spheres<dyn
   start->scene.container = scene.container;
   start->spheres = below;
   scene.start = {.file = "the layers below", .packing = std::move(start)};
+  scene.layers.clear();  // the spheres below, which come first, have others
   if (scene.target.count) *scene.target.count += static_cast<std::int64_t>(below.size());
   const PlaceOfPlan place{part.plan.domain, part.plan.container};
   return plan_of_part(whole.scene, part.sphere_class, scene, place);

@@ -187,9 +187,9 @@ void take_outcome(Packing& whole, const PackingsInside& filled, std::size_t pack
     return;
   }
   const auto [least, most] = std::ranges::minmax(made | std::views::transform(count));
-  whole.reason +=
-      fmt::format("{} of {} spheres", packings == 1 ? "one packing" : grouped(packings) + " packings",
-                  least == most ? grouped(most) : grouped(least) + " to " + grouped(most));
+  whole.reason += fmt::format("{} of {} {}", packings == 1 ? "one packing" : grouped(packings) + " packings",
+                              least == most ? grouped(most) : grouped(least) + " to " + grouped(most),
+                              most == 1 ? "sphere" : "spheres");
 }
 
 /// What the packings inside brought, with what the spheres around them brought.

@@ -1,6 +1,7 @@
 #include "run/run_zones.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -8,9 +9,12 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/sphere_classes.hpp"
+#include "plan/fitting.hpp"
 #include "plan/plan_zones.hpp"
 #include "run/begin_packing.hpp"
+#include "scene/layers_of_scene.hpp"
 #include "work/effect_log.hpp"
+#include "work/supply.hpp"
 
 namespace bernal {
 namespace {
@@ -29,6 +33,7 @@ class ZonedRun {
   }
 
   Packing packed() {
+    for (std::size_t k = 0; k < plan_.parts.size(); ++k) require_layers_of_part(k);
     if (options_.checkpoints.resume && options_.checkpoints.tell)
       options_.checkpoints.tell("a packing of zones has no checkpoints; it starts anew");
     for (std::size_t k = 0; k < plan_.parts.size(); ++k)
@@ -42,6 +47,18 @@ class ZonedRun {
   }
 
  private:
+  /// No part waits for the others to hear that its sizes are too small for its layers. They are drawn as its
+  /// run will draw them.
+  void require_layers_of_part(std::size_t k) const {
+    const Plan& plan = plan_.parts[k].plan;
+    if (plan.scene.layers.empty()) return;
+    Supply::Source source{*plan.radii, 3, seed_of_run(packing_.seed, k), *plan.scene.draw};
+    if (!std::isfinite(source.radii.max()))
+      source.cut = tail_cut(plan.scene, plan.domain, *plan.radii, plan.container);
+    const Supply supply(source, volume_of(plan.domain), plan.scene.target);
+    require_layers_fit(plan.scene, supply.smallest(), supply.largest());
+  }
+
   void pack(std::size_t k) {
     const PlannedPart& part = plan_.parts[k];
     const std::size_t below = packing_.spheres.size();

@@ -200,14 +200,18 @@ void require_layers_of(const Scene& scene) {
     fail(at, "layers",
          fmt::format("\"layers\" are of spheres in three dimensions, not in {}; leave them out",
                      scene.dimension()));
-  if (scene.largest && (has_own || std::ranges::any_of(scene.layers, has_length)))
-    fail(at, "layers",
-         "how large the \"largest\" spheres are is found out: give their layers each a \"share\", not a "
-         "thickness or a radius");
   if (scene.largest) {  // they are shares, which end alike in spheres of any radius
-    std::vector<double> outer(scene.layers.size());
-    const std::string why = place_layers(scene.layers, 1, {}, outer);
-    if (!why.empty()) fail(at, "layers", fmt::format("the \"layers\" do not fit, of a radius of 1: {}", why));
+    for (const std::vector<Layer>& layers : has_own ? classes->layers : std::vector(1, scene.layers)) {
+      if (std::ranges::any_of(layers, has_length))
+        fail(at, "layers",
+             "how large the \"largest\" spheres are is found out: give their layers each a \"share\", not a "
+             "thickness or a radius");
+      if (layers.empty()) continue;
+      std::vector<double> outer(layers.size());
+      const std::string why = place_layers(layers, 1, {}, outer);
+      if (!why.empty())
+        fail(at, "layers", fmt::format("the \"layers\" do not fit, of a radius of 1: {}", why));
+    }
     return;
   }
   const double to_radius = scene.scale * (scene.sizes_are_diameters ? 0.5 : 1);
