@@ -14,7 +14,7 @@
 #include "files/bytes_of_file.hpp"
 #include "files/csv_lines.hpp"
 #include "files/output_file.hpp"
-#include "result/free_places.hpp"
+#include "result/places_of_result.hpp"
 #include "scene/insides.hpp"
 #include "scene/unpublished.hpp"
 
