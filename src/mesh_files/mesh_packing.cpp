@@ -146,9 +146,13 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   StagedFolder staged(folder);
   const std::string title = fmt::format("bernal {}: mesh of {} spheres in a {}", text_of(this_program()),
                                         packing.spheres.size(), name_of(packing.domain));
-  meshed.note = writer.write(
-      {.mesh = mesh, .groups = groups, .name = name, .title = title, .unit = name_of(packing.scene.unit)},
-      staged);
+  meshed.note = writer.write({.mesh = mesh,
+                              .groups = groups,
+                              .folder = folder,
+                              .name = name,
+                              .title = title,
+                              .unit = name_of(packing.scene.unit)},
+                             staged);
   meshed.files = staged.publish();
   for (fs::path& path : meshed.files) path = path.lexically_normal();
   report.parts.push_back({"write", writing.seconds()});

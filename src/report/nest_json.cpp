@@ -1,6 +1,8 @@
 #include "report/nest_json.hpp"
 
 #include <cmath>
+#include <optional>
+#include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
@@ -94,6 +96,13 @@ std::string difference(const Json& said, const Json& found, const std::string& a
   return said == found ? "" : at;
 }
 
+std::optional<Outcome> outcome_named(std::string_view name) {
+  for (const Outcome outcome : {Outcome::converged, Outcome::loose, Outcome::full, Outcome::hit_limit,
+                                Outcome::cancelled, Outcome::imported})
+    if (name == name_of(outcome)) return outcome;
+  return {};
+}
+
 std::string text_in(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -153,7 +162,10 @@ std::vector<InsideFiles> files_in_nest(const std::string& text, const std::files
     if (files.table.empty()) fail();
     for (const Json& packing : one.at("packings")) {
       files.packings.push_back(packing.is_object() ? text_in(packing, "folder") : "");
-      if (files.packings.back().empty()) fail();
+      const std::optional<Outcome> outcome =
+          outcome_named(packing.is_object() ? text_in(packing, "outcome") : "");
+      if (files.packings.back().empty() || !outcome) fail();
+      files.outcomes.push_back(*outcome);
     }
   }
   return all;

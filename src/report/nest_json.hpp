@@ -13,6 +13,7 @@ struct InsideFiles {
   std::string scene = {};                  ///< of the first of the packings; empty where there is none
   std::string table = {};                  ///< which packing each sphere holds, and how it is turned
   std::vector<std::string> packings = {};  ///< a folder each, with a result
+  std::vector<Outcome> outcomes = {};      ///< of the runs that made these, where nest.json says it
 };
 
 /// nest.json: a tree of what lies inside the spheres of a packing, a level below each other: class, layer,

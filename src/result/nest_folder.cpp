@@ -14,7 +14,7 @@
 #include "files/bytes_of_file.hpp"
 #include "files/csv_lines.hpp"
 #include "files/output_file.hpp"
-#include "result/free_places.hpp"
+#include "result/places_of_result.hpp"
 #include "scene/insides.hpp"
 #include "scene/unpublished.hpp"
 
@@ -127,9 +127,11 @@ void read_nest(Packing& packing, const fs::path& folder) {
     PackingsInside& inside = packing.inside.emplace_back();
     inside.of_class = of.of_class;
     inside.layer = of.layer;
-    for (const std::string& name : all[k].packings)
-      inside.templates.push_back(
-          std::make_shared<const Packing>(read_packing(in_folder(folder, name, file))));
+    for (std::size_t t = 0; t < all[k].packings.size(); ++t) {
+      auto packed = std::make_shared<Packing>(read_packing(in_folder(folder, all[k].packings[t], file)));
+      packed->outcome = all[k].outcomes[t];  // which spheres and scene do not say
+      inside.templates.push_back(std::move(packed));
+    }
     read_table(in_folder(folder, all[k].table, file), inside);
   }
   const bool goes_together = std::ranges::all_of(packing.inside, [](const PackingsInside& inside) {

@@ -49,6 +49,21 @@ TEST(NestFiles, HoldAllOfIt) {
   EXPECT_FALSE(std::filesystem::exists(out / "nest/nest.json"));
 }
 
+// How a run ended stands in no other file that is read.
+TEST(NestFiles, OfRunsThatFellShortAreRead) {
+  const Nested scenes("{ scene = \"inner.toml\", templates = 2 }",
+                      "unit = \"cm\"\n[spheres]\ncount = 10\nradius = 1\n[[stage]]\ndo = \"insert\"\n");
+  const Packing packing = scenes.packed();
+  ASSERT_EQ(packing.outcome, Outcome::full) << packing.reason;
+  const testing::Folder out;
+  write_packing(packing, out / "nest");
+  const Packing read = read_packing(out / "nest");
+  expect_same(packing, read);
+  for (std::size_t t = 0; t < 2; ++t)
+    EXPECT_EQ(read.inside[0].templates[t]->outcome, packing.inside[0].templates[t]->outcome);
+  EXPECT_TRUE(certify_levels(read).certified);
+}
+
 TEST(NestFiles, ThatDoNotGoTogetherAreRefused) {
   const Packing packing = Nested().packed();
   const auto refusal = [&](const std::function<void(const std::filesystem::path&)>& spoil) {
