@@ -9,6 +9,8 @@
 namespace bernal {
 namespace {
 
+/// Both programs read twenty characters of a number.
+constexpr int digits = 13;
 /// The number of a face in Abaqus, by the corner opposite.
 constexpr std::array<int, 4> face_in_abaqus = {3, 4, 2, 1};
 
@@ -100,7 +102,7 @@ std::string write_mesh_for_abaqus(const MeshToWrite& file, StagedFolder& staged)
   out.add("*HEADING\n", file.title, "; lengths in ", file.unit, "\n*NODE, NSET=all\n");
   for (std::size_t i = 0; i < mesh.node_count(); ++i) {
     const Vector<3>& p = mesh.node(i);
-    out.add(i + 1, ", ", p[0], ", ", p[1], ", ", p[2], "\n");
+    out.add(i + 1, fmt::format(", {:.{}g}, {:.{}g}, {:.{}g}\n", p[0], digits, p[1], digits, p[2], digits));
   }
   add_volumes(file, out);
   add_surfaces(file, out);

@@ -34,6 +34,7 @@ std::string name_of_end(std::uint32_t face);
 struct MeshToWrite {
   const VolumeMesh& mesh;
   const MeshGroups& groups;
+  const std::filesystem::path& folder;
   const std::filesystem::path& name;  ///< of the file, in the folder
   std::string_view title;             ///< "bernal 0.2.0 (…): mesh of 1,000 spheres", in ASCII
   std::string_view unit;

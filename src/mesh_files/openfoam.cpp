@@ -1,10 +1,8 @@
-#include <algorithm>
-#include <array>
-#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "bernal/core/error.hpp"
+#include "formats/templates.hpp"
 #include "formats/text_file.hpp"
 #include "mesh_files/mesh_file.hpp"
 #include "mesh_files/poly_mesh.hpp"
@@ -65,24 +63,13 @@ void write_zones(const MeshToWrite& file, StagedFolder& staged) {
   });
 }
 
-constexpr std::string_view control = R"(FoamFile
-{
-    version     2.0;
-    format      ascii;
-    class       dictionary;
-    object      controlDict;
+/// What programs of OpenFOAM read before the mesh, where the case does not have it: it is the user's then.
+void write_system(const MeshToWrite& file, StagedFolder& staged) {
+  for (const auto& [name, text] :
+       {std::pair("system/controlDict", snappy_controlDict), std::pair("system/fvSchemes", snappy_fvSchemes),
+        std::pair("system/fvSolution", snappy_fvSolution)})
+    if (!stands(file.folder / name)) staged.write(name, text);
 }
-application     checkMesh;
-startFrom       startTime;
-startTime       0;
-stopAt          endTime;
-endTime         1;
-deltaT          1;
-writeControl    timeStep;
-writeInterval   1;
-writeFormat     ascii;
-writePrecision  10;
-)";
 
 std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& staged) {
   const VolumeMesh& mesh = file.mesh;
@@ -100,7 +87,7 @@ std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& stage
   write_list(file, staged, "labelList", "neighbour", poly.neighbour, note, add_label);
   write_boundary(file, poly, staged);
   write_zones(file, staged);
-  staged.write("system/controlDict", control);
+  write_system(file, staged);
   staged.write(file.name.string(), "");
   return fmt::format(
       "constant/polyMesh with {} faces, {} of them inside, {} patches and {} cell zones; lengths in {}",
@@ -110,14 +97,14 @@ std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& stage
 }  // namespace
 
 MeshWriter openfoam_of_mesh() {
-  return {.format = {"openfoam",
-                     "OpenFOAM: constant/polyMesh beside the file, a patch a surface, cyclic ones at ends of "
-                     "periods, a cell zone a region",
-                     ".foam", 1},
-          .others = {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
-                     "constant/polyMesh/neighbour", "constant/polyMesh/boundary",
-                     "constant/polyMesh/cellZones", "system/controlDict"},
-          .write = write_mesh_for_openfoam};
+  return {
+      .format = {"openfoam",
+                 "OpenFOAM: constant/polyMesh beside the file, a patch a surface, cyclic ones at ends of "
+                 "periods, a cell zone a region",
+                 ".foam", 1},
+      .others = {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
+                 "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "constant/polyMesh/cellZones"},
+      .write = write_mesh_for_openfoam};
 }
 
 }  // namespace bernal

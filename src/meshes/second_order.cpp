@@ -36,8 +36,8 @@ double sicn_of(const Eigen::Matrix3d& columns) {
 
 constexpr std::uint32_t none = 0xFFFFFFFF;
 
-struct EdgeOnSphere {
-  std::int64_t sphere = -1;
+struct RoundEdge {
+  std::int64_t sphere = -1;  ///< -1: on the side of a cylinder
   bool has_plane = false, is_on_neck = false;
   Vector<3> normal = Vector<3>::Zero();  ///< of the plane that it lies on, too
 };
@@ -46,20 +46,27 @@ std::uint64_t key_of_edge(std::uint32_t a, std::uint32_t b) {
   return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
 }
 
-using EdgesOnSpheres = std::unordered_map<std::uint64_t, EdgeOnSphere>;
+using RoundEdges = std::unordered_map<std::uint64_t, RoundEdge>;
 
-EdgesOnSpheres edges_on_spheres(const VolumeMesh& mesh) {
+RoundEdges round_edges(const VolumeMesh& mesh, bool is_cylinder) {
   using Kind = SurfacePatch::Kind;
-  EdgesOnSpheres edges;
-  for (const bool spheres : {true, false})
+  RoundEdges edges;
+  const auto is_side = [&](const SurfacePatch& patch) {
+    return is_cylinder && patch.kind == Kind::wall && patch.index == 0;
+  };
+  for (const bool is_first : {true, false})
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const SurfacePatch& patch = mesh.patches[mesh.patch[t]];
-      if ((patch.kind == Kind::sphere) != spheres) continue;
+      if ((patch.kind == Kind::sphere || is_side(patch)) != is_first) continue;
       const FaceCorners& c = mesh.triangles[t];
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint64_t key = key_of_edge(c[k], c[(k + 1) % 3]);
-        if (spheres) {
-          edges[key].sphere = patch.index;
+        if (is_first) {
+          // What lies on both a sphere and the side, a neck begins at.
+          const auto [edge, is_new] = edges.try_emplace(key);
+          const std::int64_t sphere = is_side(patch) ? -1 : std::int64_t{patch.index};
+          if (!is_new && edge->second.sphere != sphere) edge->second.is_on_neck = true;
+          edge->second.sphere = sphere;
           continue;
         }
         const auto found = edges.find(key);
@@ -78,8 +85,7 @@ EdgesOnSpheres edges_on_spheres(const VolumeMesh& mesh) {
 }
 
 /// The point of the sphere that is nearest to the middle, in the plane if there is one.
-Vector<3> on_sphere(const Vector<3>& middle, const Vector<3>& center, double radius,
-                    const EdgeOnSphere& edge) {
+Vector<3> on_sphere(const Vector<3>& middle, const Vector<3>& center, double radius, const RoundEdge& edge) {
   if (!edge.has_plane) return center + radius * (middle - center).normalized();
   const double height = (middle - center).dot(edge.normal);
   const Vector<3> foot = center + height * edge.normal;
@@ -143,6 +149,13 @@ bool make_equal(VolumeMesh& mesh, Middles& middles, std::size_t axis,
   return changes;
 }
 
+/// The point of the side that is nearest to the middle.
+Vector<3> on_side(const Vector<3>& middle, const Cylinder& cylinder) {
+  const Vector<3> axis = cylinder.axis.normalized(), from = middle - cylinder.base;
+  const Vector<3> foot = cylinder.base + from.dot(axis) * axis;
+  return foot + cylinder.radius * (middle - foot).normalized();
+}
+
 }  // namespace
 
 double curved_sicn(const VolumeMesh& mesh, std::size_t tetrahedron) {
@@ -180,7 +193,8 @@ std::vector<double> curved_volumes_of_regions(const VolumeMesh& mesh) {
 }
 
 CurvedEdges make_second_order(VolumeMesh& mesh, const Spheres<dynamic>& spheres, const Domain& domain) {
-  const EdgesOnSpheres curved = edges_on_spheres(mesh);
+  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  const RoundEdges curved = round_edges(mesh, cylinder != nullptr);
   const Boundary<3> boundary = boundary_of<3>(domain);
   CurvedEdges made;
   NumbersOfMiddles number;
@@ -192,10 +206,14 @@ CurvedEdges make_second_order(VolumeMesh& mesh, const Spheres<dynamic>& spheres,
     if (!is_new) return found->second;
     Vector<3> middle = (mesh.vertices[a] + mesh.vertices[b]) / 2;
     if (const auto edge = curved.find(found->first); edge != curved.end() && !edge->second.is_on_neck) {
-      const auto sphere = static_cast<std::size_t>(edge->second.sphere);
-      // The image of the centre that is nearest.
-      const Vector<3> center = middle - boundary.minimum_image(middle - Vector<3>(spheres.center(sphere)));
-      middle = on_sphere(middle, center, spheres.r[sphere], edge->second);
+      if (edge->second.sphere < 0) {
+        middle = on_side(middle, *cylinder);
+      } else {
+        const auto sphere = static_cast<std::size_t>(edge->second.sphere);
+        // The image of the centre that is nearest.
+        const Vector<3> center = middle - boundary.minimum_image(middle - Vector<3>(spheres.center(sphere)));
+        middle = on_sphere(middle, center, spheres.r[sphere], edge->second);
+      }
       ++made.curved;
     }
     mesh.middles.push_back(middle);

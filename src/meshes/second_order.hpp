@@ -9,9 +9,9 @@ namespace bernal {
 
 /// Gives tetrahedra and triangles the middles of their edges. Those of edges on spheres lie on the true
 /// spheres: of the given radii and centres, or the image that is nearest; where a sphere meets a plane, on
-/// the circle in which they meet. Rims of necks stay straight. Where a tetrahedron would be turned inside out
-/// at a corner, a middle or its centroid, its edges stay straight. Returns how many edges lie on spheres, and
-/// how many of these stay straight for that reason.
+/// the circle in which they meet. Those on the side of a cylinder lie on it. Rims of necks stay straight.
+/// Where a tetrahedron would be turned inside out at a corner, a middle or its centroid, its edges stay
+/// straight. Returns how many edges lie on spheres, and how many of these stay straight for that reason.
 ///
 /// Cost: some µs a tetrahedron, and 200 bytes. Precondition: not yet of second order.
 struct CurvedEdges {
