@@ -32,18 +32,20 @@ ContactTreatment treatment_named(const std::string& name) {
   return ContactTreatment::cap;
 }
 
-std::string text_of(const Vector<3>& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]); }
+std::string text_of_place(const Vector<3>& p) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]);
+}
 
-void print_surface(const MeshReport& report, std::string_view unit) {
+void print_surface(const BedMeshReport& report, std::string_view unit) {
   fmt::print("spheres      {}; {} necks", grouped(report.spheres), grouped(report.necks));
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for", grouped(report.shrunk_necks));
   fmt::print("\nsurface      {} triangles, least edge {:.4g} {}, least angle {:.2f} degrees near {}\n",
              grouped(report.triangles), report.least_edge, unit, report.least_triangle_angle,
-             text_of(report.place_of_least_angle));
+             text_of_place(report.place_of_least_angle));
 }
 
-void print_quality(const MeshReport& report) {
+void print_quality(const BedMeshReport& report) {
   fmt::print("mesh         {} tetrahedra, {} nodes\n", grouped(report.tetrahedra), grouped(report.nodes));
   fmt::print("quality      SICN from {:.4f}, mean {:.3f}; dihedral angles {:.2f} to {:.2f} degrees\n",
              report.least_sicn, report.mean_sicn, report.least_angle, report.largest_angle);
@@ -53,21 +55,21 @@ void print_quality(const MeshReport& report) {
   fmt::print("\n");
   for (std::size_t k = 0; k < report.worst.size(); ++k)
     fmt::print("{:<13}{:.4f} at {}\n", k == 0 ? "worst" : "", report.worst[k].sicn,
-               text_of(report.worst[k].center));
+               text_of_place(report.worst[k].center));
 }
 
-void print_report(const MeshReport& report, std::string_view unit) {
+void print_report(const BedMeshReport& report, std::string_view unit) {
   print_surface(report, unit);
   print_quality(report);
   fmt::print("porosity     {:.6f} in closed form, {:.6f} of the mesh", report.porosity,
              report.meshed_porosity);
   if (report.contact_area > 0) fmt::print("; contact area {:.6g} {}^2", report.contact_area, unit);
   fmt::print("\n");
-  for (const MeshReport::Group& group : report.groups)
+  for (const BedMeshReport::Group& group : report.groups)
     fmt::print("{:<13}{} tetrahedra, volume {:.9g} {}^3\n", group.name, grouped(group.tetrahedra),
                group.volume, unit);
   fmt::print("seconds     ");
-  for (const MeshReport::Part& part : report.parts) {
+  for (const BedMeshReport::Part& part : report.parts) {
     fmt::print(" {} {:.1f}", part.name, part.seconds);
     if (part.peak_bytes > 0) fmt::print(" ({:.2f} GB)", part.peak_bytes / 1e9);
   }
@@ -88,7 +90,7 @@ int mesh_of(MeshCall call) try {
   say_if_unpublished(call.folder);
   const MeshedPacking meshed = mesh_packing(packing, call.options, call.file, bar.monitor());
   bar.clear();
-  const MeshReport& report = meshed.report;
+  const BedMeshReport& report = meshed.report;
   if (call.json)
     fmt::print("{}", mesh_report_as_json(packing, report));
   else if (!call.quiet)
@@ -100,7 +102,7 @@ int mesh_of(MeshCall call) try {
   }
   if (report.keeps_promise()) return exit_code::done;
   say(stderr, "bernal: the least SICN is {:.4f}, below {}: smaller --mesh-size and --neck-size help\n",
-      report.least_sicn, MeshReport::promised_sicn);
+      report.least_sicn, BedMeshReport::promised_sicn);
   return exit_code::not_reached;
 } catch (const Cancelled&) {
   if (!call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");

@@ -115,6 +115,9 @@ std::string write_struts(const CellFile& file, StagedFolder& staged) {
     throw Error(ErrorCode::bad_argument,
                 "struts are written as .vtp or .csv: let the name end in one of these", {file.name.string()});
   const std::vector<Strut> struts = struts_of(file.cells);
+  if (struts.empty())
+    throw Error(ErrorCode::bad_argument, "there are no struts: the cells meet in no edge away from the walls",
+                {file.name.string()});
   const double length = length_of(struts), radius = radius_of(file, length);
   (ending == ".csv" ? write_struts_csv : write_struts_vtp)(file, struts, radius, staged);
   const double share = file.cells.dimension == 2

@@ -121,7 +121,36 @@ std::string_view example_of(Quantity of) {
   return of == Quantity::mass      ? "2 kg"
          : of == Quantity::density ? "1550 kg/m3"
          : of == Quantity::spread  ? "0.6 phi"
+         : of == Quantity::volume  ? "12.5 mm3"
                                    : "25.4 mm";
+}
+
+/// Of a name such as "mm3", "mm^3" or "mm" with a superscript three, the unit of length.
+std::string_view length_of_cubic(std::string_view name) {
+  for (const std::string_view cube : {"^3", "\xC2\xB3", "3"})
+    if (name.ends_with(cube)) return trimmed(name.substr(0, name.size() - cube.size()));
+  return {};
+}
+
+std::optional<double> volume_with_unit(std::string_view number, std::string_view name, Unit unit,
+                                       std::string& complaint) {
+  const std::optional<double> value = decimal_product(number, 1, 1);
+  const auto& names = unit_names();
+  const std::string_view length = length_of_cubic(name);
+  if (std::ranges::find(names, length) != std::ranges::end(names)) {
+    const Ratio ratio = conversion_ratio(unit_named(length), unit);
+    const double volume = value.value_or(0) * std::pow(ratio.numerator / ratio.denominator, 3);
+    if (value && std::isfinite(volume)) return volume;
+    complaint = "that is beyond what numbers can hold";
+    return {};
+  }
+  complaint = name.empty() ? fmt::format("it names no unit; write \"{} {}3\", or {} without quotes", number,
+                                         name_of(unit), number)
+                           : fmt::format(
+                                 "a volume has a unit of length to the power of three, such as "
+                                 "\"{} {}3\"",
+                                 number, name_of(unit));
+  return {};
 }
 
 }  // namespace
@@ -161,6 +190,7 @@ std::optional<double> number_with_unit(std::string_view text, Quantity of, Unit 
     return {};
   }
   const std::string_view number = text.substr(0, end), said = trimmed(text.substr(end));
+  if (of == Quantity::volume) return volume_with_unit(number, said, unit, complaint);
   std::string_view name = said;
   for (const auto& [other, same] : other_names)
     if (name == other) name = same;

@@ -69,7 +69,8 @@ CellStatistics::Moments moments_of(const std::vector<double>& values) {
     fourth += d * d * d * d / n;
   }
   made.deviation = std::sqrt(second);
-  if (second > 0) {
+  constexpr double rounding = 1e-12;
+  if (made.deviation > rounding * std::abs(made.mean)) {
     made.skewness = third / (second * made.deviation);
     made.kurtosis = fourth / (second * second);
   }
@@ -88,6 +89,7 @@ CellShape shape_of(const Cells& cells, std::uint32_t cell) {
   const Vector<3> apex = middle_of(places.corners);
   const int dimension = cells.dimension;
   Vector<3> moment = Vector<3>::Zero();
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();  // ∫ x xᵀ dV about the apex
   for (const std::vector<Vector<3>>& loop : places.loops) {
     if (dimension == 2) {
       const Vector<3> a = loop[0] - apex, b = loop[1] - apex;
@@ -95,6 +97,7 @@ CellShape shape_of(const Cells& cells, std::uint32_t cell) {
       shape.volume += area;
       shape.surface += (b - a).norm();
       moment += area / 3 * (a + b);
+      spread += area / 12 * (a * a.transpose() + b * b.transpose() + (a + b) * (a + b).transpose());
       continue;
     }
     const Vector<3> middle = middle_of(loop) - apex;
@@ -104,7 +107,10 @@ CellShape shape_of(const Cells& cells, std::uint32_t cell) {
       const double sixth = middle.dot(twice) / 6;
       shape.volume += sixth;
       shape.surface += 0.5 * twice.norm();
-      moment += sixth / 4 * (middle + a + b);
+      const Vector<3> sum = middle + a + b;
+      moment += sixth / 4 * sum;
+      spread += sixth / 20 *
+                (middle * middle.transpose() + a * a.transpose() + b * b.transpose() + sum * sum.transpose());
     }
   }
   shape.centroid = apex;
@@ -114,9 +120,8 @@ CellShape shape_of(const Cells& cells, std::uint32_t cell) {
     const double radius = std::pow(std::max(shape.volume, 0.0) / unit, 1.0 / dimension);
     shape.sphericity = dimension * unit * std::pow(radius, dimension - 1) / shape.surface;
   }
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Vector<3>& corner : places.corners)
-    spread += (corner - shape.centroid) * (corner - shape.centroid).transpose();
+  if (shape.volume <= 0) return shape;
+  spread -= moment * moment.transpose() / shape.volume;
   const Eigen::Vector3d along =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues();
   const double least = along[3 - dimension];

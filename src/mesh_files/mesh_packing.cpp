@@ -40,7 +40,7 @@ void require_between(double value, double most, const char* what) {
     refuse(fmt::format("{} must be above 0 and below {}, not {}", what, most, value));
 }
 
-void take_surface(const ConformingSurface& surface, MeshReport& report) {
+void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   const SurfaceStatement& stated = surface.statement;
   report.necks = surface.necks.size();
   report.triangles = surface.triangles.size();
@@ -52,7 +52,7 @@ void take_surface(const ConformingSurface& surface, MeshReport& report) {
   report.contact_area = stated.contact_area;
 }
 
-void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, MeshReport& report) {
+void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, BedMeshReport& report) {
   const MeshQuality quality = quality_of(mesh);
   report.tetrahedra = mesh.tetrahedra.size();
   report.nodes = mesh.node_count();
@@ -75,7 +75,7 @@ void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, MeshReport& rep
 
 /// The mesh, with what it is like so far.
 VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
-                   MeshReport& report) {
+                   BedMeshReport& report) {
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
   const Solids solids = solids_of(
@@ -139,7 +139,7 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   require_free(folder, names_of_files(writer, name));
   if (packing.spheres.empty()) refuse("there are no spheres to mesh around");
   MeshedPacking meshed;
-  MeshReport& report = meshed.report;
+  BedMeshReport& report = meshed.report;
   report.spheres = packing.spheres.size();
   report.domain_volume = volume_of(packing.domain);
   const VolumeMesh mesh = mesh_of(packing, options, monitor, report);

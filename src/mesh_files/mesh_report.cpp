@@ -4,7 +4,7 @@
 
 namespace bernal {
 
-std::string mesh_report_as_json(const Packing& packing, const MeshReport& report) {
+std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& report) {
   using Json = nlohmann::ordered_json;
   const auto place = [](const Vector<3>& p) { return Json{p[0], p[1], p[2]}; };
   Json json{{"unit", name_of(packing.scene.unit)},
@@ -19,7 +19,7 @@ std::string mesh_report_as_json(const Packing& packing, const MeshReport& report
             {"nodes", report.nodes},
             {"least_sicn", report.least_sicn},
             {"mean_sicn", report.mean_sicn},
-            {"promised_sicn", MeshReport::promised_sicn},
+            {"promised_sicn", BedMeshReport::promised_sicn},
             {"least_dihedral_angle", report.least_angle},
             {"largest_dihedral_angle", report.largest_angle},
             {"histogram", report.histogram},
@@ -29,12 +29,12 @@ std::string mesh_report_as_json(const Packing& packing, const MeshReport& report
             {"contact_area", report.contact_area}};
   json["least_curved_sicn"] = report.least_curved_sicn ? Json(*report.least_curved_sicn) : Json();
   for (const char* list : {"worst", "groups", "parts"}) json[list] = Json::array();
-  for (const MeshReport::Place& at : report.worst)
+  for (const BedMeshReport::Place& at : report.worst)
     json["worst"].push_back({{"sicn", at.sicn}, {"center", place(at.center)}});
-  for (const MeshReport::Group& group : report.groups)
+  for (const BedMeshReport::Group& group : report.groups)
     json["groups"].push_back(
         {{"name", group.name}, {"volume", group.volume}, {"tetrahedra", group.tetrahedra}});
-  for (const MeshReport::Part& part : report.parts)
+  for (const BedMeshReport::Part& part : report.parts)
     json["parts"].push_back(
         {{"name", part.name}, {"seconds", part.seconds}, {"peak_bytes", part.peak_bytes}});
   return json.dump(2) + "\n";

@@ -59,20 +59,29 @@ class Circles {
   }
 
  private:
-  std::uint32_t piece_moved(std::uint32_t p, int axis, int by) const {
+  /// The image of a piece one period before along an axis; none where it does not reach into the domain, as
+  /// it does if a part of its circle at the upper end is in there.
+  std::uint32_t piece_before(std::uint32_t p, int axis) const {
     auto image = draft_.pieces[p].piece.image;
-    image[static_cast<std::size_t>(axis)] += by;
+    --image[static_cast<std::size_t>(axis)];
     const auto found = numbers_.find({draft_.pieces[p].piece.sphere, image});
-    if (found == numbers_.end())
-      throw Error(ErrorCode::bad_argument, "a sphere at the end of a period has no image at the other end");
-    return found->second;
+    return found == numbers_.end() ? Delaunay::none : found->second;
+  }
+
+  static std::uint32_t known(std::uint32_t piece) {
+    if (piece == Delaunay::none) fail();
+    return piece;
+  }
+  [[noreturn]] static void fail() {
+    throw Error(ErrorCode::bad_argument,
+                "a sphere touches an end of a period to rounding, where the images of it do not agree");
   }
 
   std::size_t circle_at(std::uint32_t p, int face) const {
     const auto& circles = draft_.pieces[p].circles;
     for (std::size_t c = 0; c < circles.size(); ++c)
       if (circles[c].kind == Circle::Kind::end && circles[c].face == face) return c;
-    throw Error(ErrorCode::bad_argument, "a sphere at the end of a period has no image at the other end");
+    fail();
   }
 
   const std::vector<NearBall>& near_of(std::uint32_t p) {
@@ -104,7 +113,7 @@ class Circles {
       const Circle& circle = draft_.pieces[p].circles[c];
       if (circle.kind != Circle::Kind::end || circle.face % 2 == 0) continue;
       const int axis = circle.face / 2;
-      const std::uint32_t lower = piece_moved(p, axis, -1);
+      const std::uint32_t lower = known(piece_before(p, axis));
       const auto same = [&](std::size_t of) {
         const Circle& wanted = draft_.pieces[p].circles[of];
         if (wanted.kind == Circle::Kind::end)
@@ -163,7 +172,7 @@ class Circles {
   /// The vertex inside a ball where three of its planes meet.
   std::uint32_t triple(std::uint32_t p, std::array<std::size_t, 3> of) {
     if (const int face = upper_among(p, of); face >= 0) {
-      const std::uint32_t lower = piece_moved(p, face / 2, -1);
+      const std::uint32_t lower = known(piece_before(p, face / 2));
       std::array<std::size_t, 3> there;
       for (std::size_t k = 0; k < 3; ++k) there[k] = circle_before(p, lower, of[k], face);
       return draft_.lifted(face / 2, triple(lower, there));
@@ -200,7 +209,8 @@ class Circles {
     const double c = one.normal.dot(other.normal), sine2 = 1 - c * c;
     if (sine2 < 1e-12) return {};
     if (const int face = upper_among(p, both); face >= 0) {
-      const std::uint32_t lower = piece_moved(p, face / 2, -1);
+      const std::uint32_t lower = piece_before(p, face / 2);
+      if (lower == Delaunay::none) return {};
       std::vector<std::uint32_t> ids =
           chord(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face));
       for (std::uint32_t& id : ids) id = draft_.lifted(face / 2, id);
@@ -247,7 +257,7 @@ class Circles {
     const auto& circles = draft_.pieces[p].circles;
     for (std::size_t c = 0; c < circles.size(); ++c)
       if (circles[c].kind == Circle::Kind::contact && circles[c].normal == wanted.normal) return c;
-    throw Error(ErrorCode::bad_argument, "an image of a sphere has other caps");
+    fail();
   }
 
   double size_at(std::uint32_t p, const Vector<3>& q) {
@@ -298,7 +308,8 @@ class Circles {
     if (!circle.chains.empty() || circle.is_whole) return;
     if (circle.kind == Circle::Kind::end && circle.face % 2 == 1) {
       const int axis = circle.face / 2;
-      const std::uint32_t lower = piece_moved(p, axis, -1);
+      const std::uint32_t lower = piece_before(p, axis);
+      if (lower == Delaunay::none) return;
       const std::size_t there = circle_at(lower, circle.face - 1);
       fill(lower, there);
       const Circle& given = draft_.pieces[lower].circles[there];

@@ -51,10 +51,12 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
   require_options(options);
   const auto* box = std::get_if<Box>(&solids.domain);
   const auto* cylinder = std::get_if<Cylinder>(&solids.domain);
-  if ((box == nullptr && cylinder == nullptr) || solids.spheres.dimension() != 3)
-    throw Error(ErrorCode::bad_argument,
-                fmt::format("meshes are made in boxes and cylinders of three dimensions, not in a {}",
-                            name_of(solids.domain)));
+  const auto* sphere = std::get_if<Sphere>(&solids.domain);
+  if ((box == nullptr && cylinder == nullptr && sphere == nullptr) || solids.spheres.dimension() != 3)
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("meshes are made in boxes, cylinders and spheres of three dimensions, not in a {}",
+                    name_of(solids.domain)));
   SurfaceDraft draft(solids, options);
   for (const Piece& piece : solids.pieces) draft.pieces.push_back({piece, {}});
   add_necks(draft);
@@ -64,8 +66,10 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
   mesh_flat_faces(draft);
   if (box != nullptr) {
     mesh_box(draft, *box);
-  } else {
+  } else if (cylinder != nullptr) {
     mesh_cylinder(draft, *cylinder);
+  } else {
+    mesh_ball(draft, *sphere);
   }
   add_regions(draft);
   state(draft);

@@ -78,6 +78,8 @@ double MeshSizes::from_walls(const Vector<3>& p) const {
     const double z = d.dot(a);
     least = cylinder->radius - (d - z * a).norm();
     if (!cylinder->periodic) least = std::min({least, z, cylinder->height - z});
+  } else if (const auto* sphere = std::get_if<Sphere>(&solids_.domain)) {
+    least = sphere->radius - (p - sphere->center).norm();
   }
   return least;
 }

@@ -41,8 +41,18 @@ std::vector<WallView> walls_around(const Domain& domain, const Vector<3>& p) {
       views.push_back({1, -a, z});
       views.push_back({2, a, cylinder->height - z});
     }
+  } else if (const auto* sphere = std::get_if<Sphere>(&domain)) {
+    const Vector<3> d = p - sphere->center;
+    if (d.norm() > 0) views.push_back({0, d.normalized(), sphere->radius - d.norm()});
   }
   return views;
+}
+
+/// The radius of the round wall on which a neck stands; 0 for flat ones.
+double radius_of_wall(const Domain& domain, const DraftNeck& neck) {
+  if (const auto* sphere = std::get_if<Sphere>(&domain)) return sphere->radius;
+  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  return cylinder != nullptr && neck.wall == 0u ? cylinder->radius : 0;
 }
 
 class Necks {
@@ -241,21 +251,22 @@ class Necks {
     }
   }
 
-  /// By how much a neck to a cylinder's side is lower beside its middle.
+  /// By how much a neck to a round wall is lower at most beside its middle.
   double least_height_less(const DraftNeck& neck) const {
-    const auto* cylinder = std::get_if<Cylinder>(&solids_.domain);
-    if (cylinder == nullptr || neck.wall != 0) return 0;
-    const double a = neck.radius, radius = cylinder->radius;
-    return a * a / (radius + std::sqrt(radius * radius - a * a));
+    const double a = neck.radius, radius = radius_of_wall(solids_.domain, neck);
+    return radius > 0 ? a * a / (radius + std::sqrt(radius * radius - a * a)) : 0;
   }
 
-  /// What a neck to a cylinder's side lacks between its tangent plane and the side: the integral over the
-  /// neck's section of R - sqrt(R² - x²), by Gauss and Chebyshev's rule.
+  /// What a neck to a round wall lacks between its tangent plane and the wall. Of a cylinder the integral
+  /// over the neck's section of R - sqrt(R² - x²), by Gauss and Chebyshev's rule.
   double beyond_tangent(const DraftNeck& neck) const {
-    const auto* cylinder = std::get_if<Cylinder>(&solids_.domain);
-    if (cylinder == nullptr || *neck.wall != 0) return 0;
+    const double a = neck.radius, radius = radius_of_wall(solids_.domain, neck);
+    if (!(radius > 0)) return 0;
+    if (std::holds_alternative<Sphere>(solids_.domain)) {
+      const double lower = least_height_less(neck);
+      return pi * a * a * lower - cap_volume(radius, lower);
+    }
     constexpr int nodes = 48;
-    const double a = neck.radius, radius = cylinder->radius;
     double sum = 0;
     for (int k = 1; k <= nodes; ++k) {
       const double t = pi * k / (nodes + 1), x = a * std::cos(t), s = std::sin(t);
@@ -298,10 +309,12 @@ Vector<3> foot_of(const SurfaceDraft& draft, const DraftNeck& neck, const Vector
   if (const auto* box = std::get_if<Box>(&draft.solids.domain)) {
     const int k = static_cast<int>(*neck.wall / 2);
     p[k] = *neck.wall % 2 == 0 ? box->corner[k] : box->corner[k] + box->size[k];
-  } else if (const auto& cylinder = std::get<Cylinder>(draft.solids.domain); *neck.wall == 0) {
-    // Where lines along the neck's axis, which is a radius of the cylinder, meet its side.
-    const double x = beside.dot(cylinder.axis.normalized().cross(neck.axis));
-    p += (std::sqrt(cylinder.radius * cylinder.radius - x * x) - cylinder.radius) * neck.axis;
+  } else if (const double radius = radius_of_wall(draft.solids.domain, neck); radius > 0) {
+    // Where lines along the neck's axis, which is a radius of the wall, meet it.
+    const auto* cylinder = std::get_if<Cylinder>(&draft.solids.domain);
+    const double x =
+        cylinder != nullptr ? beside.dot(cylinder->axis.normalized().cross(neck.axis)) : beside.norm();
+    p += (std::sqrt(radius * radius - x * x) - radius) * neck.axis;
   }
   return p;
 }

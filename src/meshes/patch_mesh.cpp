@@ -309,6 +309,16 @@ double least_angle(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c) {
   return std::atan2(2 * twice, ab + bc + ca - 2 * shortest);
 }
 
+std::vector<Vector<3>> icosahedron() {
+  const double g = 0.5 * (1 + std::sqrt(5.0));
+  std::vector<Vector<3>> corners;
+  for (const double a : {-1.0, 1.0})
+    for (const double b : {-g, g})
+      for (const Vector<3>& p : {Vector<3>(0, a, b), Vector<3>(a, b, 0), Vector<3>(b, 0, a)})
+        corners.push_back(p.normalized());
+  return corners;
+}
+
 PatchMesh mesh_patch(const Patch& patch) { return Mesher(patch).made(); }
 
 }  // namespace bernal

@@ -38,6 +38,9 @@ struct PatchMesh {
 /// triangulation of its points, which are then too near to each other for the size of its edges.
 PatchMesh mesh_patch(const Patch&);
 
+/// Its corners, on the unit sphere: points to begin with.
+std::vector<Vector<3>> icosahedron();
+
 /// The least angle of a triangle, in radians.
 double least_angle(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c);
 

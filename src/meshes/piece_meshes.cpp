@@ -15,17 +15,6 @@ double distance_to_circle(const Vector<3>& p, const Circle& circle) {
   return std::hypot(along, beside);
 }
 
-/// The corners of an icosahedron.
-std::vector<Vector<3>> icosahedron() {
-  const double g = 0.5 * (1 + std::sqrt(5.0));
-  std::vector<Vector<3>> corners;
-  for (const double a : {-1.0, 1.0})
-    for (const double b : {-g, g})
-      for (const Vector<3>& p : {Vector<3>(0, a, b), Vector<3>(a, b, 0), Vector<3>(b, 0, a)})
-        corners.push_back(p.normalized());
-  return corners;
-}
-
 /// A mesh of a part with the ids of its boundary's points, and the size at those added.
 struct PartMesh {
   std::vector<std::uint32_t> ids;

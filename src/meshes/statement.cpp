@@ -49,14 +49,16 @@ Vector<3> point_in_fluid(const SurfaceDraft& draft) {
 }  // namespace
 
 Vector<3> inner_point(const Piece& piece) {
-  // The centre, moved behind each cut until it is well behind all of them.
+  // The centre, moved behind each cut until it is well behind all of them, as far as the lowest part left
+  // asks.
+  double room = piece.radius;
+  for (const Cut& cut : piece.cuts)
+    room = std::min(room, piece.radius + cut.keeps.offset - cut.keeps.normal.dot(piece.center));
   Vector<3> point = piece.center;
   for (int round = 0; round < 50; ++round)
-    for (const Cut& cut : piece.cuts) {
-      const double beyond = cut.keeps.normal.dot(point) - cut.keeps.offset;
-      const double room = piece.radius + cut.keeps.offset - cut.keeps.normal.dot(piece.center);
-      if (beyond > -0.2 * room) point -= (beyond + 0.3 * room) * cut.keeps.normal;
-    }
+    for (const Cut& cut : piece.cuts)
+      if (const double beyond = cut.keeps.normal.dot(point) - cut.keeps.offset; beyond > -0.2 * room)
+        point -= (beyond + 0.3 * room) * cut.keeps.normal;
   return point;
 }
 

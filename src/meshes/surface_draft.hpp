@@ -125,6 +125,7 @@ void mesh_flat_faces(SurfaceDraft&);
 /// Triangles of the walls and ends of periods.
 void mesh_box(SurfaceDraft&, const Box&);
 void mesh_cylinder(SurfaceDraft&, const Cylinder&);
+void mesh_ball(SurfaceDraft&, const Sphere&);
 /// A point inside a piece and not near its cuts.
 Vector<3> inner_point(const Piece&);
 /// Regions with points inside.

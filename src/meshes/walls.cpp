@@ -240,4 +240,35 @@ void mesh_cylinder(SurfaceDraft& draft, const Cylinder& cylinder) {
   }
 }
 
+void mesh_ball(SurfaceDraft& draft, const Sphere& sphere) {
+  Patch patch{.surface = Delaunay::Surface::sphere, .extent = sphere.radius};
+  std::vector<std::uint32_t> ids;
+  for (const DraftNeck& neck : draft.necks) {
+    if (!neck.wall) continue;
+    auto& circle = patch.circles.emplace_back();
+    for (const std::uint32_t id : neck.rims[1]) {
+      circle.push_back(static_cast<std::uint32_t>(ids.size()));
+      ids.push_back(id);
+      patch.points.push_back(draft.made.vertices[id] - sphere.center);
+    }
+    for (std::size_t k = 0; k < circle.size(); ++k)
+      patch.edges.push_back({circle[k], circle[(k + 1) % circle.size()]});
+  }
+  patch.size = [&](const Vector<3>& p) {
+    return draft.sizes.on_wall(sphere.center + p, p.normalized(), false);
+  };
+  for (const Vector<3>& corner : icosahedron()) {
+    const Vector<3> p = sphere.radius * corner;
+    const bool is_free = std::ranges::all_of(draft.necks, [&](const DraftNeck& neck) {
+      const Vector<3> foot = sphere.radius * neck.axis;
+      return !neck.wall || (p - foot).norm() > 2 * neck.radius;
+    });
+    if (is_free) patch.starts.push_back(p);
+  }
+  const PatchMesh mesh = mesh_patch(patch);
+  for (const Vector<3>& p : mesh.added) ids.push_back(draft.add_vertex(sphere.center + p, patch.size(p)));
+  const std::uint32_t number = draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}});
+  for (const FaceCorners& t : mesh.triangles) draft.add_triangle(number, ids[t[0]], ids[t[1]], ids[t[2]]);
+}
+
 }  // namespace bernal

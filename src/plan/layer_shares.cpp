@@ -148,7 +148,8 @@ std::optional<double> expected_mass(const Plan& plan) {
   const Scene& scene = plan.scene;
   if (scene.dimension() != 3 || !scene.zones.empty()) return std::nullopt;
   const double volume = cubic_metres_of(plan);
-  if (has_layers(scene) && scene.material_density) return *scene.material_density * volume;
+  if (has_layers(scene) && scene.inside.empty() && !layers_have_densities(scene))
+    return scene.material_density ? std::optional(*scene.material_density * volume) : std::nullopt;
   std::vector<std::vector<double>> volumes;
   try {
     volumes = matter_shares(scene);

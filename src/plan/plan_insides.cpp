@@ -141,7 +141,7 @@ std::string hint_of_ball(const PlanOfBall& of, const Inside& inside, bool differ
 /// A mass counts spheres by the density of their material, which is not all that these are made of.
 void require_no_mass(const Scene& scene, const FilledClass& of, const Inside& inside) {
   const Target& target = scene.target;
-  if (!layers_in(scene, of.of_class).empty() || !(target.mass_counted || target.bulk_density_asked)) return;
+  if (!(target.mass_counted || target.bulk_density_asked)) return;
   throw Error(
       ErrorCode::bad_scene,
       fmt::format("\"{}\" is of solid spheres, and those of {} are filled by others: give a \"count\" or a "

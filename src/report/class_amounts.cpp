@@ -22,18 +22,14 @@ std::vector<ClassAmount> class_amounts(const Packing& packing) {
   const double cubic_metres = packing.volume * std::pow(metres_per(packing.scene.unit), 3);
   std::vector<std::optional<double>> masses(amounts.size());
   if (has_layers(packing.scene) || !packing.inside.empty()) masses = masses_by_class(packing);
-  const auto layers = layers_by_class(packing.scene);
   for (std::size_t c = 0; c < amounts.size(); ++c) {
     const bool is_filled =
         std::ranges::find(packing.inside, c, &PackingsInside::of_class) != packing.inside.end();
-    const bool has_layers = c < layers.size() && !layers[c].empty();
     ClassAmount& amount = amounts[c];
     if (dimension != 3) continue;
-    // A density that is said of spheres with layers is that of the whole; else it is that of their matter.
-    if (amount.of.material_density && (has_layers || !is_filled))
+    amount.mass = masses[c];
+    if (!amount.mass && amount.of.material_density && !is_filled)  // of the whole spheres
       amount.mass = *amount.of.material_density * amount.packing_fraction * cubic_metres;
-    else
-      amount.mass = masses[c];
   }
   return amounts;
 }

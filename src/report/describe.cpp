@@ -10,6 +10,7 @@
 #include "bernal/scene/sphere_classes.hpp"
 #include "report/describe.hpp"
 #include "scene/scene_entries.hpp"
+#include "scene/sphere_matter.hpp"
 
 namespace bernal {
 namespace {
@@ -111,9 +112,11 @@ std::string amount_in_words(const Scene& scene, double diameter, bool are_equal,
   const Target& target = scene.target;
   const double density = scene.material_density.value_or(0);
   if (target.mass_counted)
-    return fmt::format("{:.6g} kg of {:.6g} kg/m3 in spheres {} {:.4g} {}: {} sphere{}", *target.mass_counted,
-                       density, are_equal ? "of" : "whose mean volume is that of", diameter,
-                       name_of(scene.unit), grouped(count), count == 1 ? "" : "s");
+    return fmt::format(
+        "{:.6g} kg of {} in spheres {} {:.4g} {}: {} sphere{}", *target.mass_counted,
+        layers_have_densities(scene) ? std::string("their layers") : fmt::format("{:.6g} kg/m3", density),
+        are_equal ? "of" : "whose mean volume is that of", diameter, name_of(scene.unit), grouped(count),
+        count == 1 ? "" : "s");
   if (target.bulk_density_asked)
     return fmt::format("{:.6g} kg/m3 of spheres of {:.6g} kg/m3: {} {:.4g}", *target.bulk_density_asked,
                        density, target.bed.porosity ? "porosity" : "packing fraction",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -177,7 +178,25 @@ class CellRun {
     for (double& r : radii_) r *= room;
   }
 
+  /// So that a box whose size is free has the volume of all cells. Radii lose what centres may be rounded by.
+  void scale_to_volumes(Packing& packing) const {
+    auto& box = std::get<Box>(packing.domain);
+    const double factor = std::cbrt(1 / scale_in(packing));
+    const double rounding =
+        16 * std::numeric_limits<double>::epsilon() * factor * bounds_of(packing.domain).diagonal();
+    box.corner *= factor;
+    box.size *= factor;
+    for (auto& coordinates : packing.spheres.x)
+      for (double& x : coordinates) x *= factor;
+    for (double& r : packing.spheres.r) r = std::max(factor * r - rounding, 0.5 * factor * r);
+    wrap(packing.spheres, packing.domain);
+    packing.volume = volume_of(packing.domain);
+    packing.container = nullptr;
+    for (double& edge : std::get<PeriodicBox>(packing.scene.container).size) edge *= factor;
+  }
+
   void find_weights(Packing& packing) {
+    if (plan_.box_follows) scale_to_volumes(packing);
     Effect effect{cells_effect, 0, 0};
     options_.monitor.report({cells_effect, 0.9, fmt::format("{} cells", grouped(volumes_.size()))});
     CellWeights found;
@@ -207,12 +226,18 @@ class CellRun {
     std::vector<double> by_radii = own, reached = found.volumes;
     std::ranges::sort(by_radii);
     std::ranges::sort(reached);
-    for (const double share : {0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99}) {
-      const auto k = static_cast<std::size_t>(std::ceil(share * static_cast<double>(own.size())));
-      const std::size_t at = std::max<std::size_t>(k, 1) - 1;
+    // The k-th of N cells is wanted where the share is (k + 1/2) / N; between two of them it is straight.
+    const auto below = [](const std::vector<double>& sorted, double share) {
+      const double place = share * static_cast<double>(sorted.size()) - 0.5;
+      const double last = static_cast<double>(sorted.size() - 1),
+                   from = std::floor(std::clamp(place, 0.0, last));
+      const auto k = static_cast<std::size_t>(from);
+      const double part = std::clamp(place - from, 0.0, 1.0);
+      return k + 1 < sorted.size() ? sorted[k] + part * (sorted[k + 1] - sorted[k]) : sorted[k];
+    };
+    for (const double share : {0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99})
       cells.quantiles.push_back({share, cells.scale * stated_.volume_of(stated_.sizes->quantile(share)),
-                                 by_radii[at], reached[at]});
-    }
+                                 below(by_radii, share), below(reached, share)});
     if (cells.error < same_volume) {
       packing.reason +=
           fmt::format("; the cells have the volumes asked for, within {:.1g} of each", cells.error);

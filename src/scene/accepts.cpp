@@ -162,6 +162,8 @@ std::string expectation(const Key& key, const std::optional<Value>& given) {
   if (key.type == Type::position && !key.words.empty()) return fmt::format("a point [x, y, z] or {}", words);
   if (key.type == Type::distribution && !key.words.empty())
     return fmt::format("{} or {}", rules.at(key.type).kind, words);
+  if (key.type == Type::distribution && key.quantity == Quantity::volume)
+    return "a positive volume or a table { distribution = … }";
   const Rule& rule = rule_of(key);
   if (key.table)
     return fmt::format("{}{} {{ {} = … }}", rule.kind, key.type == Type::length ? " or a table" : "",

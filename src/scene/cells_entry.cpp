@@ -56,8 +56,9 @@ const Entry& cells_entry() {
   static const Entry made = entry<CellSizes>(
       {.name = "cells",
        .help = "the sizes that the Laguerre cells of the packing are to have, in place of those of spheres",
-       .keys = {required(key(Type::distribution, sizes(&CellSizes::volume), "volume",
-                             "of a cell, in the scene's unit to the power of three")),
+       .keys = {required(of_quantity(Quantity::volume,
+                                     key(Type::distribution, sizes(&CellSizes::volume), "volume",
+                                         "of a cell, in the scene's unit to the power of three"))),
                 required(key(Type::distribution, sizes(&CellSizes::diameter), "diameter",
                              "of a ball of the volume of a cell")),
                 integer(&CellSizes::rounds, "rounds",

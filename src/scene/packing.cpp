@@ -30,8 +30,12 @@ std::optional<double> density_of_matter(const Packing& packing) {
 
 /// The mean density of the spheres by volume.
 std::optional<double> density_of(const Packing& packing) {
-  const bool layers = has_layers(packing.scene);
-  if (layers ? !packing.scene.material_density : !packing.inside.empty()) return density_of_matter(packing);
+  if (has_layers(packing.scene) || !packing.inside.empty()) {
+    const std::optional<double> known = density_of_matter(packing);
+    if (known || !packing.inside.empty()) return known;
+    if (packing.scene.material_density) return packing.scene.material_density;  // of the whole spheres
+    return std::nullopt;
+  }
   if (packing.scene.zones.empty()) return packing.scene.material_density;
   const std::vector<SphereClass> classes = classes_of(packing.scene);
   double mass = 0, volume = 0;

@@ -22,6 +22,14 @@ std::vector<std::vector<SphereMatter>> matter_by_class(const Scene& scene) {
   return all;
 }
 
+bool layers_have_densities(const Scene& scene) {
+  if (!has_layers(scene)) return false;
+  for (const std::vector<SphereMatter>& of_class : matter_by_class(scene))
+    for (const SphereMatter& matter : of_class)
+      if (!matter.density) return false;
+  return true;
+}
+
 std::vector<std::string> materials_of(const Scene& scene) {
   std::vector<std::string> materials;
   for (const std::vector<SphereMatter>& of_class : matter_by_class(scene))

@@ -21,4 +21,8 @@ struct SphereMatter {
 /// complete.
 std::vector<std::vector<SphereMatter>> matter_by_class(const Scene&);
 
+/// Whether spheres have layers, and all that these and spheres without any are of has a density: what spheres
+/// weigh then follows from their layers, whatever is said of the whole.
+bool layers_have_densities(const Scene&);
+
 }  // namespace bernal

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "bernal/scene/sphere_layers.hpp"
+#include "scene/sphere_matter.hpp"
+
 namespace bernal::schema {
 
 bool is_sha256(const std::string& digest) {
@@ -11,12 +14,16 @@ bool is_sha256(const std::string& digest) {
 }
 
 void amounts_rule(const Scene& scene, const Section& section) {
-  for (const std::string_view amount : {"mass", "bulk_density"})
-    if (!scene.material_density && (amount == "mass" ? scene.target.mass : scene.target.bulk_density))
-      section.fail(amount,
-                   fmt::format("\"{}\" in {} needs the \"material_density\" of the spheres, in kg/m3, such "
-                               "as 2500 for glass",
-                               amount, section.name));
+  for (const std::string_view amount : {"mass", "bulk_density"}) {
+    const bool is_mass = amount == "mass";
+    if (scene.material_density || !(is_mass ? scene.target.mass : scene.target.bulk_density)) continue;
+    if (is_mass && layers_have_densities(scene)) continue;
+    section.fail(amount,
+                 fmt::format("\"{}\" in {} needs the \"material_density\" of the spheres, in kg/m3, such "
+                             "as 2500 for glass{}",
+                             amount, section.name,
+                             is_mass && has_layers(scene) ? ", or of each of their layers" : ""));
+  }
 }
 
 void start_rule(const Scene& scene, const Section& section) {

@@ -58,6 +58,7 @@ std::size_t TableReader::choose(const toml::table& table, std::string_view selec
 std::optional<Value> TableReader::value_of(const toml::node& node, const Key& key,
                                            const std::string& where) const {
   Measured measured{key.measured(), unit_};
+  if (measured.quantity == Quantity::diameter && sizes_are_volumes_) measured.quantity = Quantity::volume;
   if (measured.quantity == Quantity::diameter && !sizes_are_diameters_) measured.quantity = Quantity::length;
   const bool line = key.type == Type::points;
   try {
@@ -125,6 +126,12 @@ void TableReader::take_columns(const toml::node& node, const Entry& entry, const
 /// A plain length, whose key says what it must be, is a constant distribution.
 SceneSizes TableReader::read_sizes(const toml::node& node, const Key& key, const std::string& where) const {
   SceneSizes sizes;
+  if (key.quantity == Quantity::volume && !sizes_are_volumes_) {
+    sizes_are_volumes_ = true;
+    sizes = read_sizes(node, key, where);
+    sizes_are_volumes_ = false;
+    return sizes;
+  }
   if (const toml::table* table = node.as_table()) {
     const std::string named = fmt::format("{} of {}", key.name, where);
     const auto& entries = schema::size_entries();
@@ -140,7 +147,8 @@ SceneSizes TableReader::read_sizes(const toml::node& node, const Key& key, const
     return sizes;
   }
   const Key length = {.name = key.name, .type = Type::length};
-  const auto value = value_of(node, schema::of_quantity(Quantity::diameter, key), where);
+  const auto value = value_of(
+      node, schema::of_quantity(sizes_are_volumes_ ? Quantity::volume : Quantity::diameter, key), where);
   if (!value || !schema::accepts(length, *value)) refuse(node, key, where, value);
   sizes = Constant{std::get<double>(*value)};
   sizes.locations.whole = sizes.locations.keys["value"] = at(node.source());

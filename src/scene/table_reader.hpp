@@ -59,6 +59,7 @@ class TableReader {
   std::string file_;
   Unit unit_ = {};  ///< of the scene, once it is read
   bool sizes_are_diameters_ = false;
+  mutable bool sizes_are_volumes_ = false;  ///< those that are just being read
   mutable SaidInPhi in_phi_;
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -63,7 +64,8 @@ TEST(Cells, HaveTheDistributionThatIsWanted) {
   EXPECT_LT(cells.error, 1e-9);
   EXPECT_GT(cells.mean_sphericity, 0.8);
   EXPECT_LT(cells.mean_sphericity, 0.95);
-  EXPECT_NEAR(cells.scale, 1, 0.02);  // the box is as large as the cells together
+  EXPECT_NEAR(cells.scale, 1, 1e-12);  // the box is as large as the cells together
+  EXPECT_NEAR(packing.volume, std::accumulate(volumes.begin(), volumes.end(), 0.0), 1e-9 * packing.volume);
   for (const auto& [share, wanted, by_radii, reached] : cells.quantiles) {
     EXPECT_NEAR(reached, wanted, 0.1 * wanted) << share;
     EXPECT_NEAR(by_radii, wanted, (share < 0.05 ? 0.6 : 0.25) * wanted) << share;  // small ones lie in holes
@@ -100,6 +102,34 @@ TEST(Cells, OfOneVolumeAndOfClassesAreExact) {
   const std::vector<double> volumes = sorted(cells_of(two));
   EXPECT_NEAR(volumes[199], two.cells->scale, 1e-9);
   EXPECT_NEAR(volumes[200], 4 * two.cells->scale, 1e-8);
+}
+
+TEST(Cells, FewHaveTheirVolumeInABoxOfFreeSize) {
+  for (const int count : {1, 2, 3, 5, 50}) {
+    const Packing packing =
+        run(build(scene_of(periodic, fmt::format("count = {}\ncells = {{ volume = 2.0 }}\n", count))));
+    EXPECT_TRUE(certify(packing.spheres, packing.domain).certified) << count;
+    for (const double volume : cells_of(packing)) EXPECT_NEAR(volume, 2, 1e-8) << count;
+  }
+}
+
+TEST(Cells, VolumesMayHaveUnits) {
+  const auto volume_of_cells = [](const std::string& volume) {
+    const Scene scene = parse_scene(
+        "unit = \"mm\"\n" + periodic + "[spheres]\ncount = 3\ncells = { volume = " + volume + " }\n",
+        "s.toml");
+    return std::get<Constant>(*scene.cells->volume).value;
+  };
+  EXPECT_DOUBLE_EQ(volume_of_cells("\"0.002 cm3\""), 2);
+  EXPECT_DOUBLE_EQ(volume_of_cells("\"2 mm^3\""), 2);
+  EXPECT_DOUBLE_EQ(volume_of_cells("\"2 mm³\""), 2);
+  try {
+    volume_of_cells("\"1 cm\"");
+    ADD_FAILURE() << "a length is no volume";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("a positive volume"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("\"1 mm3\""), std::string::npos) << error.what();
+  }
 }
 
 TEST(Cells, AreTheSameForAnyNumberOfThreadsAndAsRead) {
@@ -169,7 +199,7 @@ TEST(Cells, NothingElseIsAccepted) {
   says(periodic, "count = 10\ncells = 3\n", "must be a table { volume = … }, not 3");
   says(periodic, "count = 10\ncells = { volume = 1, diameter = 1 }\n", "exclude each other");
   says(periodic, "count = 10\ncells = { volume = 1, size = 1 }\n", "unknown key \"size\"");
-  says(periodic, "count = 10\ncells = { volume = -1 }\n", "must be a positive length");
+  says(periodic, "count = 10\ncells = { volume = -1 }\n", "must be a positive volume");
   says(periodic, "count = 10\nradius = 1\ncells = { volume = 1 }\n", "exclude each other");
   says(periodic, "cells = { volume = 1 }\n", "needs a \"count\"");
   says(periodic, "count = 10\nscale = 2\ncells = { volume = 1 }\n", "leave \"scale\" out");

@@ -186,10 +186,23 @@ TEST(Cells, OfLatticesStayTogether) {
         EXPECT_EQ(shape.corners, corners) << name << " " << n;
         EXPECT_EQ(shape.edges, edges) << name << " " << n;
         EXPECT_NEAR(shape.sphericity, sphericity, 1e-6) << name;
+        EXPECT_NEAR(shape.aspect, 1, 1e-9) << name;
         EXPECT_NEAR(shape.volume, packing.volume / static_cast<double>(cells.size()), 1e-10) << name;
       }
       expect_complex(cells, name);
     }
+}
+
+TEST(Cells, HaveTheAspectOfTheirVolumeHoweverTheyAreCut) {
+  Spheres<dynamic> one(3);
+  one.push_back(Vector<3>(1, 1, 1), 0.5);
+  const CellShape of_box = shape_of(cells_of(one, Box{Vector<3>::Zero(), Vector<3>(2, 4, 8)}), 0);
+  EXPECT_NEAR(of_box.aspect, 4, 1e-12);
+  for (const int sides : {8, 32, 256}) {
+    EXPECT_NEAR(shape_of(cells_of(one, Sphere{Vector<3>(1, 1, 1), 1}, {sides}), 0).aspect, 1,
+                8.0 / (sides * sides))
+        << sides;
+  }
 }
 
 TEST(Cells, OfRandomPointsHaveThePublishedMeans) {

@@ -245,6 +245,21 @@ TEST(ConformingSurface, CylindersHaveRoundSides) {
   }
 }
 
+TEST(ConformingSurface, BallsInABall) {
+  const Sphere container{.radius = 2};
+  Spheres<dynamic> spheres(3);
+  for (const Vector<3>& c : {Vector<3>(1.5, 0, 0), Vector<3>(0.5, 0, 0), Vector<3>(0, 0.2, -1.2)})
+    spheres.push_back(c, 0.5);
+  for (const ContactTreatment contact : {ContactTreatment::gap, ContactTreatment::bridge}) {
+    const ConformingSurface surface =
+        conforming_surface(solids_in(spheres, container, contact), {.solids = true});
+    expect_sound(surface, 0.02);
+    EXPECT_EQ(surface.necks.size(), contact == ContactTreatment::bridge ? 2u : 0u);
+    EXPECT_EQ(euler_number(surface, 0), contact == ContactTreatment::bridge ? 4 : 8);
+    EXPECT_GT(surface.statement.least_angle, 18);
+  }
+}
+
 TEST(ConformingSurface, IsTheSameInAllThreads) {
   const Domain box = periodic_box(Vector<3>(3, 3, 3));
   const Solids solids = solids_in(scattered(box, 0.5, 500, 1), box, ContactTreatment::gap);
@@ -256,8 +271,9 @@ TEST(ConformingSurface, IsTheSameInAllThreads) {
 TEST(ConformingSurface, OtherDomainsAreRefused) {
   Spheres<dynamic> spheres(3);
   spheres.push_back(Vector<3>(0, 0, 0), 0.5);
+  const Revolved drum{.profile = {{0, -2}, {2, -2}, {2, 2}, {0, 2}}};
+  EXPECT_THROW(conforming_surface(solids_in(spheres, drum, ContactTreatment::none), {}), Error);
   const Solids solids = solids_in(spheres, Sphere{.radius = 2}, ContactTreatment::none);
-  EXPECT_THROW(conforming_surface(solids, {}), Error);
   EXPECT_THROW(conforming_surface(solids, {.sphere_edge = 0}), Error);
 }
 

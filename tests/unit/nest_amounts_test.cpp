@@ -1,6 +1,7 @@
 // What spheres weigh that others fill: the same as all spheres and what is between them, each by itself.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -132,6 +133,53 @@ TEST(NestAmounts, ASphereWithoutLayersIsItsMaterialAroundTheOthers) {
     ADD_FAILURE() << "spheres were counted as if they were solid";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("\"mass\" is of solid spheres"), std::string::npos)
+        << error.what();
+  }
+}
+
+/// As many spheres with layers as weigh that.
+Scene of_mass(const std::string& radius, const std::string& coat_density, const std::string& more = {}) {
+  return parse_scene(
+      "unit = \"mm\"\nseed = 4\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\nmass = \"5 "
+      "g\"\n" +
+          more + "radius = " + radius +
+          "\nlayers = [{ name = \"core\", material_density = 8000 }, { name = \"coat\", thickness = { "
+          "distribution = \"normal\", mean = 0.1, sd = 0.02, max = 0.2 }" +
+          coat_density + " }]\n[[stage]]\ndo = \"insert\"\n",
+      "mass.toml");
+}
+
+// What is counted by its mass weighs that, to half of a sphere, drawn thicknesses and all.
+TEST(LayerMass, IsThatOfTheLayers) {
+  for (const char* radius :
+       {"0.6", "{ distribution = \"lognormal\", median = 0.6, sigma = 0.2, basis = \"number\" }"})
+    // What is said of whole spheres says nothing about layers that have densities.
+    for (const char* more : {"", "material_density = 2500\n"}) {
+      const Packing packing = run(build(of_mass(radius, ", material_density = 1500", more)));
+      ASSERT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+      const SphereLayers layers = layers_of(packing);
+      double sum = 0, heaviest = 0;
+      for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+        const double core = ball(layers.of(i)[0]), whole = ball(packing.spheres.r[i]);
+        const double mass = 1e-9 * (8000 * core + 1500 * (whole - core));
+        sum += mass;
+        heaviest = std::max(heaviest, mass);
+      }
+      EXPECT_GT(packing.spheres.size(), 300u);
+      EXPECT_NEAR(sum, 5e-3, 0.5 * heaviest) << radius;
+      EXPECT_NEAR(*mass_of(packing, packing.packing_fraction()) / sum, 1, 1e-12);
+      EXPECT_NEAR(*class_amounts(packing).at(0).mass / sum, 1, 1e-12);
+    }
+  EXPECT_NE(describe(build(of_mass("0.6", ", material_density = 1500"))).find("0.005 kg of their layers"),
+            std::string::npos);
+  try {
+    of_mass("0.6", "");
+    ADD_FAILURE() << "a coat without a density was weighed";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("needs the \"material_density\" of the spheres, in kg/m3, such as 2500 "
+                        "for glass, or of each of their layers"),
+              std::string::npos)
         << error.what();
   }
 }

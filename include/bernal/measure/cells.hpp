@@ -52,7 +52,7 @@ struct Cells {
   Vector<3> periods = Vector<3>::Zero();  ///< 0 along axes that do not repeat themselves
   std::vector<Vector<3>> centers;         ///< in one period
   std::vector<double> radii;              ///< whose squares are the weights
-  std::vector<Vector<3>> corners;  ///< each once a period; z = 0 in two dimensions
+  std::vector<Vector<3>> corners;         ///< each once a period; z = 0 in two dimensions
   std::vector<Face> faces;
   std::vector<std::uint32_t> first_corner;  ///< of every face, and the end
   std::vector<Corner> corners_of_faces;
@@ -128,7 +128,8 @@ struct CellShape {
   /// The surface of the ball of the same volume over that of the cell; in two dimensions likewise with
   /// lengths.
   double sphericity = 0;
-  /// The root of the largest over the smallest principal moment of the corners' distances from the centroid.
+  /// The root of the largest over the smallest principal moment of the volume about the centroid: 1 for a
+  /// ball, a cube and a regular polyhedron.
   double aspect = 0;
 
   /// 2 for a polyhedron, 0 for a polygon.

@@ -36,7 +36,7 @@ struct MeshFileOptions {
 };
 
 /// What the mesh of a packing is like.
-struct MeshReport {
+struct BedMeshReport {
   std::size_t spheres = 0, necks = 0, triangles = 0;
   double least_edge = 0;            ///< of all triangles, as a length
   double least_triangle_angle = 0;  ///< in degrees
@@ -78,7 +78,7 @@ struct MeshReport {
 };
 
 struct MeshedPacking {
-  MeshReport report;
+  BedMeshReport report;
   std::vector<std::filesystem::path> files;  ///< the format's file, then those that go with it
   std::string note;                          ///< what they hold, in one line
 };
@@ -99,6 +99,6 @@ MeshedPacking mesh_packing(const Packing&, const MeshFileOptions&, const std::fi
                            const Monitor& monitor = {});
 
 /// The report as a JSON object: what `bernal mesh --json` prints.
-std::string mesh_report_as_json(const Packing&, const MeshReport&);
+std::string mesh_report_as_json(const Packing&, const BedMeshReport&);
 
 }  // namespace bernal
