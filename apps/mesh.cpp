@@ -148,7 +148,7 @@ Command mesh_command() {
               0.01, 0.9),
        within({"--gap-size", &options.gap_edge,
                "Edges where surfaces are near each other, in widths of the gap; 4 if absent", "WIDTHS"},
-              0.5, 50),
+              0.5, 50.0),
        one_of({"--regions", &call->regions, "What is meshed: the fluid, or the spheres too; fluid if absent",
                "WORD"},
               {"fluid", "all"}),
