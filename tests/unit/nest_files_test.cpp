@@ -168,6 +168,15 @@ TEST(NestFiles, TablesOfLayersAreHeldAgainstEveryLevel) {
       << table().fault;
   add_to(certificate, table());
   EXPECT_FALSE(certificate.certified);
+  EXPECT_TRUE(certificate.statement.starts_with("Not certified: ")) << certificate.statement;
+  EXPECT_EQ(certificate.statement.find("Certified"), std::string::npos) << certificate.statement;
+  for (const auto& file : {inner, nest / "layers.csv"}) {
+    const std::string kept = bytes_of_file(file);
+    std::ofstream(inner, std::ios::binary) << written;
+    std::filesystem::remove(file);
+    EXPECT_NE(table().fault.find(file.string() + " is missing"), std::string::npos) << table().fault;
+    std::ofstream(file, std::ios::binary) << kept;
+  }
   std::ofstream(inner, std::ios::binary) << written;
   EXPECT_EQ(table().fault, "");
   rewrite(nest / "layers.csv", [](std::string& text) { text.insert(text.rfind("3\n"), "1"); });
