@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
 #include <string>
 
 #include "bernal/result/certify_levels.hpp"
@@ -42,6 +43,13 @@ TEST(NestFiles, HoldAllOfIt) {
   expect_same(packing, run(build(read_scene(out / "nest/scene.toml"))));
   const Packing inner = run(build(read_scene(out / "nest/inside/pebble/template-002/scene.toml")));
   EXPECT_EQ(inner.spheres.x, packing.inside[0].templates[1]->spheres.x);
+  // Of those inside, of which there may be many, no more than it takes.
+  const auto inner_folder = out / "nest/inside/pebble/template-002";
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(inner_folder))
+    names.insert(entry.path().filename().string());
+  EXPECT_EQ(names, (std::set<std::string>{"spheres.csv", "scene.toml", "report.json"}));
+  EXPECT_NE(bytes_of_file(inner_folder / "report.json").find("\"not_measured\""), std::string::npos);
   // A second result takes the place of all of the first.
   const Packing plain = run(build(parse_scene(pebbles(""), "plain.toml")));
   write_packing(plain, out / "nest");
