@@ -252,7 +252,8 @@ TEST(Levels, LayersAreReadBackFromTheirShells) {
   const Folder folder;
   const auto reads = [&](const Packing& packing, const std::string& format, const std::string& name,
                          const std::string& file, const std::string& level = {}) {
-    std::filesystem::remove_all(folder / name);
+    if (format == "openmc")
+      std::filesystem::remove_all(folder / name);  // what bernal left there goes otherwise
     write_export(packing, output_of(format), folder / name);
     return import_packing(folder / file, {.level = level});
   };
