@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/scene/sphere_classes.hpp"
@@ -96,13 +97,34 @@ struct PlanOfBall {
   std::optional<double> asked_radius;
 };
 
+/// Spheres that have more volume together than the ball fit into it in no way, whoever packs them.
+void require_volume(const Plan& inside) {
+  const Scene& scene = inside.scene;
+  if (!scene.target.count || !inside.start.spheres.empty() || scene.overlap > 0) return;
+  const double least = static_cast<double>(*scene.target.count) * ball_volume(3, inside.radii->min()) /
+                       volume_of(inside.domain);
+  constexpr double rounding = 1e-9;
+  if (least <= 1 + rounding) return;
+  throw Error(
+      ErrorCode::bad_scene,
+      fmt::format("{} spheres of {} {:.6g} {}{} have {:.3g} times the volume of what they are to lie in: "
+                  "ask for fewer or smaller ones",
+                  grouped(static_cast<std::uint64_t>(*scene.target.count)),
+                  scene.sizes_are_diameters ? "diameter" : "radius",
+                  (scene.sizes_are_diameters ? 2 : 1) * inside.radii->min(), name_of(scene.unit),
+                  inside.radii->max() > inside.radii->min() ? " or more" : "", least),
+      scene.target.where);
+}
+
 /// Errors of what lies inside say so, at their own place where they have one.
 PlanOfBall plan_of_ball(const Plan& around, const Inside& inside, const std::string& name, double radius,
                         const ScenesAround& scenes) {
   const Unit unit = around.scene.unit;
   try {
     const SceneInside read = read_scene_inside(inside.scene, {radius, unit});
-    return {build_inside(read.scene, scenes), read.asked_radius};
+    PlanOfBall made{build_inside(read.scene, scenes), read.asked_radius};
+    require_volume(made.plan);
+    return made;
   } catch (const Error& error) {
     const Location& at = error.location();
     const std::string of = at.line > 0 || at.file.empty() ? "" : at.file + ": ";

@@ -214,6 +214,17 @@ TEST(Nest, BadInputIsRefusedInOneLine) {
       "unit = \"cm\"\n[container]\nkind = \"box\"\nsize = [1, 1, 1]\n[spheres]\ncount = 3\nradius = 0.1\n");
   expect_refusal("{ scene = \"inner.toml\" }", "inside itself",
                  "unit = \"cm\"\n[spheres]\ncount = 3\nradius = 0.5\ninside = { scene = \"inner.toml\" }\n");
+  // More volume than the ball has is no matter of how they are packed; of sizes the least counts.
+  for (const auto& [radius, words] :
+       {std::pair{"0.5", "126 spheres of radius 0.5 cm have 1.01 times the volume"},
+        {"{ distribution = \"uniform\", min = 0.5, max = 0.6 }",
+         "126 spheres of radius 0.5 cm or more have"}})
+    expect_refusal("{ scene = \"inner.toml\", templates = 1 }", words,
+                   fmt::format("unit = \"cm\"\n[spheres]\ncount = 126\nradius = {}\n", radius));
+  EXPECT_EQ(Nested("{ scene = \"inner.toml\", templates = 1 }",
+                   "unit = \"cm\"\n[spheres]\ncount = 124\nradius = 0.5\n")
+                .refusal(),
+            "");
   const testing::Folder folder;
   folder.write("inner.toml", particles);
   const auto refusal_of = [&](const std::string& scene) -> std::string {
@@ -280,11 +291,12 @@ TEST(Nest, ARunThatIsStoppedFillsWhatItHas) {
   const testing::Folder out;
   const Certificate written = write_packing(packing, out / "nest").certificate;
   EXPECT_TRUE(written.certified);
-  if (packing.inside[0].templates.empty())
+  if (packing.inside[0].templates.empty()) {
     EXPECT_NE(
         written.statement.find("Nothing lies in them; inside pebble: none of 10 spheres holds a packing."),
         std::string::npos)
         << written.statement;
+  }
   expect_same(packing, read_packing(out / "nest"));
 }
 
