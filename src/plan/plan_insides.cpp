@@ -226,6 +226,17 @@ double expected_count_of_packings(const Plan& plan) {
   return count;
 }
 
+/// "inside of pebble / kernel: …", of what may be said of further levels already; of a long way in both ends.
+std::string said_inside(const std::string& name, const std::string& said) {
+  constexpr std::string_view begin = "inside of ", step = " / ";
+  if (!said.starts_with(begin)) return fmt::format("{}{}: {}", begin, name, said);
+  const std::string rest = said.substr(begin.size());
+  const std::size_t colon = rest.find(": "), first = rest.find(step), last = rest.rfind(step, colon);
+  if (first == rest.npos || first >= colon || first == last)
+    return fmt::format("{}{}{}{}", begin, name, step, rest);
+  return fmt::format("{}{}{}…{}", begin, name, step, rest.substr(last));
+}
+
 void add_costs(Plan& whole, const PlannedInside& made) {
   const Plan& inside = made.plan;
   const double packings = made.packings();
@@ -237,9 +248,11 @@ void add_costs(Plan& whole, const PlannedInside& made) {
   whole.items.push_back(
       {.name = inside_effect,
        .what = fmt::format(
-           "{} of {} spheres each, in balls of radius {:.6g} {}, {} ({}); {} spheres stand for themselves",
+           "{} of {} each, in balls of radius {:.6g} {}, {} ({}); {} spheres stand for themselves",
            packings == 1 ? "one packing" : grouped(static_cast<std::uint64_t>(packings)) + " packings",
-           about(inside.expected_count), made.ball, name_of(whole.scene.unit),
+           std::llround(inside.expected_count) == 1 ? "one sphere"
+                                                    : about(inside.expected_count) + " spheres",
+           made.ball, name_of(whole.scene.unit),
            made.templates ? fmt::format("turned at random in {} spheres", about(made.filled))
                           : "one in every sphere",
            made.name, about(made.filled * expected_count_of_all_levels(inside))),
@@ -250,9 +263,8 @@ void add_costs(Plan& whole, const PlannedInside& made) {
   whole.expected_seconds += packings * inside.expected_seconds;
   whole.expected_memory_bytes += inside.expected_memory_bytes + held;  // of one that is packed, and of all
   if (whole.caution.empty() && !inside.caution.empty())
-    whole.caution = fmt::format("inside of {}: {}", made.name, inside.caution);
-  for (const std::string& hint : inside.hints)
-    whole.hints.push_back(fmt::format("inside of {}: {}", made.name, hint));
+    whole.caution = said_inside(made.name, inside.caution);
+  for (const std::string& hint : inside.hints) whole.hints.push_back(said_inside(made.name, hint));
 }
 
 }  // namespace

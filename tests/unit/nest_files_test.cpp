@@ -149,6 +149,26 @@ TEST(NestFiles, OfAUserAreNotReplaced) {
       << refusal(blocked.path());
 }
 
+TEST(NestFiles, AStartSaysWhatItLeavesOut) {
+  const testing::Folder out;
+  write_packing(Nested().packed(), out / "nest");
+  const auto notes_of = [&](const std::string& keys) {
+    out.write(
+        "again.toml",
+        "unit = \"cm\"\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\nstart = \"nest\"\n" +
+            keys + "[[stage]]\ndo = \"insert\"\n");
+    std::string all;
+    for (const std::string& hint : build(read_scene(out / "again.toml")).hints) all += hint;
+    return all;
+  };
+  EXPECT_EQ(notes_of(""),
+            "the start gives places and sizes of spheres alone; left out: what lies inside of them, their "
+            "layers, their classes");
+  EXPECT_EQ(
+      notes_of("material = \"pebble\"\nlayers = [{ name = \"fuel\", radius = 2.5 }, { name = \"shell\" }]\n"),
+      "the start gives places and sizes of spheres alone; left out: what lies inside of them");
+}
+
 TEST(NestFiles, TablesOfLayersAreHeldAgainstEveryLevel) {
   // Layers inside of spheres too, and drawn ones, so that a sphere's number matters.
   const Nested scenes(

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <tuple>
 
 #include "bernal/core/unit.hpp"
 #include "bernal/plan/plan.hpp"
@@ -273,6 +274,22 @@ TEST(Nest, AContainerThatGivesWayToTheBallSaysSo) {
         << said_of("30", inside);
   EXPECT_EQ(said_of("25", templates).find("asks for"), std::string::npos);
   EXPECT_EQ(said_of("\"2.5 cm\"", templates).find("asks for"), std::string::npos);
+}
+
+TEST(Nest, NotesOfFurtherLevelsNameTheWayInOnce) {
+  const Nested scenes("{ scene = \"a.toml\", templates = 1 }");
+  const auto level = [](const std::string& keys) { return "unit = \"cm\"\n" + keys; };
+  for (const auto& [name, next, radius] :
+       {std::tuple{"a.toml", "b.toml", 1.0}, {"b.toml", "c.toml", 0.4}, {"c.toml", "d.toml", 0.1}})
+    scenes.folder.write(name,
+                        level(fmt::format("[spheres]\ncount = 1\nradius = {}\ninside = {{ scene = \"{}\", "
+                                          "templates = 1 }}\n",
+                                          radius, next)));
+  scenes.folder.write("d.toml", level("container = { kind = \"sphere\", radius = 3 }\n[spheres]\ncount = 1\n"
+                                      "radius = 0.01\n"));
+  const std::string said = describe(build(read_scene(scenes.folder / "outer.toml")));
+  EXPECT_NE(said.find("note       inside of pebble / … / spheres: d.toml asks for"), std::string::npos)
+      << said;
 }
 
 TEST(Nest, ARunThatIsStoppedFillsWhatItHas) {
