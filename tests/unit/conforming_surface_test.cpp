@@ -10,6 +10,7 @@
 #include <set>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "bernal/core/error.hpp"
 
@@ -266,7 +267,11 @@ TEST(ConformingSurface, BallsInABall) {
 TEST(ConformingSurface, IsTheSameInAllThreads) {
   const Domain box = periodic_box(Vector<3>(3, 3, 3));
   const Solids solids = solids_in(scattered(box, 0.5, 500, 1), box, ContactTreatment::gap);
-  const ConformingSurface one = conforming_surface(solids, {}), other = conforming_surface(solids, {});
+  const auto made_in = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return conforming_surface(solids, {});
+  };
+  const ConformingSurface one = made_in(1), other = made_in(3);
   EXPECT_EQ(one.triangles, other.triangles);
   EXPECT_EQ(one.vertices, other.vertices);
 }
