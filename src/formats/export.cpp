@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
 #include "files/seal.hpp"
@@ -208,10 +209,24 @@ std::string spheres_in(const Exported& file) {
                      name_of(file.unit()));
 }
 
+/// What the scene says of its spheres and the file does not, as it holds whole spheres of the outermost
+/// level.
+std::string left_out_text(const Exported& file, const Format& format) {
+  if (format.holds_levels && format.holds_levels(file.output)) return {};
+  const auto& keys = table_of(file.output).keys;
+  const bool knows_layers = keys.find("layers") || keys.find("layer") || keys.find("values");
+  const bool has_insides = !file.packing.inside.empty();
+  const bool drops_layers = !knows_layers && has_layers(file.packing.scene);
+  std::string what = drops_layers ? "the layers of spheres are" : "what lies inside of them is";
+  if (drops_layers && has_insides) what = "the layers of spheres and what lies inside of them are";
+  if (!has_insides && !drops_layers) return {};
+  return fmt::format("; {} left out: openmc, as .xml or a folder, serpent and scone hold all levels", what);
+}
+
 /// `written` is the writer's own description, or empty.
 std::string note_of(const Exported& file, const Format& format, const std::string& written,
                     const Monitor& monitor) {
-  const std::string remark = format.remark ? format.remark(file) : "";
+  const std::string remark = (format.remark ? format.remark(file) : "") + left_out_text(file, format);
   const std::string contacts =
       file.contacts.treatment == ContactTreatment::none ? "" : "; " + contact_text(file.contacts);
   if (format.note || !written.empty())

@@ -116,7 +116,8 @@ Format flat_format() {
       .file = "flat.csv",
       .least_dimension = 3,
       .write_text = write_flat,
-      .note = rounding_in_words};
+      .note = rounding_in_words,
+      .holds_levels = [](const Output&) { return true; }};
 }
 
 }  // namespace bernal

@@ -172,6 +172,9 @@ struct Format {
   /// Writes the files and returns what they hold, for formats that know it only then.
   std::string (*write_with_note)(const Exported&, StagedFolder&) = nullptr;
 
+  /// Whether the output holds layers of spheres, and what lies inside of them; null where none does.
+  bool (*holds_levels)(const Output&) = nullptr;
+
   /// Files beside the file whose number the packing decides; the file answers for them, see `sealed_script`.
   std::vector<std::string> (*beside)(const Packing&, const Output&) = nullptr;
 

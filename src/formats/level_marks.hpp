@@ -41,6 +41,7 @@ Format format_of_levels() {
           .file = of.file,
           .unit = Unit::cm,
           .write_with_note = of.write,
+          .holds_levels = [](const Output&) { return true; },
           .beside = of.beside,
           .reads = of.reads,
           .unit_from = "cm",

@@ -11,6 +11,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/scene/sphere_layers.hpp"
+#include "scene/scene_entries.hpp"
 #include "scene/sphere_matter.hpp"
 
 namespace bernal {
@@ -37,21 +38,29 @@ std::string plain_name(const std::string& name) {
 
 class MaterialList {
  public:
+  explicit MaterialList(std::size_t longest_name) : longest_name_(longest_name) {}
+
   std::uint32_t of(const std::string& name, std::optional<double> density) {
     if (density) *density *= kg_per_m3;
     const auto [known, is_new] =
         known_.try_emplace({name, density}, static_cast<std::uint32_t>(list_.size()));
-    if (!is_new) return known->second;
+    return is_new ? add(name, density) : known->second;
+  }
+  /// Unlike all others, also those of that name.
+  std::uint32_t add(const std::string& name, std::optional<double> density) {
     const std::string plain = plain_name(name);
-    std::string unlike = plain;
-    for (int k = 2; std::ranges::find(list_, unlike, &LevelMaterial::name) != list_.end(); ++k)
-      unlike = fmt::format("{}_{}", plain, k);
+    std::string unlike = plain.substr(0, longest_name_);
+    for (int k = 2; std::ranges::find(list_, unlike, &LevelMaterial::name) != list_.end(); ++k) {
+      const std::string ending = fmt::format("_{}", k);
+      unlike = plain.substr(0, longest_name_ - ending.size()) + ending;
+    }
     list_.push_back({unlike, density});
-    return known->second;
+    return static_cast<std::uint32_t>(list_.size() - 1);
   }
   std::vector<LevelMaterial> take() { return std::move(list_); }
 
  private:
+  const std::size_t longest_name_;
   std::map<std::pair<std::string, std::optional<double>>, std::uint32_t> known_;
   std::vector<LevelMaterial> list_;
 };
@@ -78,6 +87,15 @@ void add_level_names(const Packing& packing, const std::string& name, std::vecto
       add_level_names(*packing.inside[k].templates[t], inner_name(name, k, t), names);
 }
 
+/// As who wrote the scene knows it.
+std::string container_in_words(const SceneContainer& container, const Domain& domain) {
+  if (std::holds_alternative<MeshFile>(container)) return "the container, a mesh,";
+  const std::string kind(schema::word_of(container, domain));
+  if (!container.obstacles.empty()) return fmt::format("the container, a {} with \"obstacles\",", kind);
+  if (container.rounding > 0) return fmt::format("the container, a {} with \"rounding\",", kind);
+  return fmt::format("the container, of kind \"{}\",", kind);
+}
+
 TurnMatrix matrix_of(const std::array<double, 4>& quaternion) {
   const auto [w, x, y, z] = quaternion;
   return {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
@@ -87,10 +105,10 @@ TurnMatrix matrix_of(const std::array<double, 4>& quaternion) {
 
 class Builder {
  public:
-  explicit Builder(const Exported& file) : file_(file) {}
+  Builder(const Exported& file, std::size_t longest_name) : file_(file), materials_(longest_name) {}
 
   LevelModel build() {
-    const std::uint32_t background = materials_.of(std::string(name_of_background), std::nullopt);
+    const std::uint32_t background = materials_.add(std::string(name_of_background), std::nullopt);
     add_level(file_.packing, std::string(name_of_outermost), background);
     Level& outermost = model_.levels.front();
     // Those numbers are the ones that were certified for this file.
@@ -237,12 +255,12 @@ std::string LevelModel::in_words() const {
   return words + fmt::format("; materials {}", fmt::join(names, ", "));
 }
 
-LevelModel levels_of(const Exported& file) {
+LevelModel levels_of(const Exported& file, std::size_t longest_name) {
   if (std::holds_alternative<Mesh>(file.domain))
-    refuse(file,
-           "has no walls of triangles, and the container is a mesh; ‹container› of bernal import gives the "
-           "spheres another one, such as a box around them");
-  return Builder(file).build();
+    refuse(file, fmt::format("has no walls of triangles, of which {} is made; ‹container› of bernal import "
+                             "gives the spheres another one, such as a box around them",
+                             container_in_words(file.packing.scene.container, file.domain)));
+  return Builder(file, longest_name).build();
 }
 
 std::vector<std::string> level_names(const Packing& packing) {

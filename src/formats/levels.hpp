@@ -67,9 +67,10 @@ struct LevelModel {
 /// The transpose, which takes what is turned back: p = R^T p'.
 TurnMatrix transposed(const TurnMatrix&);
 
-/// Throws Error{bad_scene} with one line for a packing whose container is a mesh, and for a treatment of
-/// contacts where spheres hold others. Cost: O(N) of all levels.
-LevelModel levels_of(const Exported&);
+/// Names of materials have at most so many letters, at least 10. Throws Error{bad_scene} with one line for a
+/// packing whose container is a mesh, and for a treatment of contacts where spheres hold others. Cost: O(N)
+/// of all levels.
+LevelModel levels_of(const Exported&, std::size_t longest_name = std::string::npos);
 
 /// The names of the levels that it would have.
 std::vector<std::string> level_names(const Packing&);

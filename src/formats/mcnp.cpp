@@ -46,6 +46,11 @@ class McnpCard {
   std::string text_, line_;
 };
 
+/// 0 for -0.
+Vector<3> without_signs_of_zero(const Vector<3>& v) {
+  return v.unaryExpr([](double x) { return x == 0 ? 0.0 : x; });
+}
+
 class McnpInput {
  public:
   McnpInput(const Exported& file, const LevelModel& model, TextFile& out)
@@ -60,7 +65,8 @@ class McnpInput {
   }
 
   void write() {
-    out_.add(file_.title(), "\nc lengths in cm; the last digits of a material are those of its m card\n");
+    write_title(file_.title());
+    out_.add("c lengths in cm; the last digits of a material are those of its m card\n");
     write_cells();
     out_.add('\n');
     write_surfaces();
@@ -79,6 +85,17 @@ class McnpInput {
     if (repeats_) card_.add("u={}", universe_of_box);
     card_.add("imp:n=1");
     card_.end(out_);
+  }
+
+  /// In one line, and what is longer in comments.
+  void write_title(std::string_view rest) {
+    for (std::string_view mark = ""; !rest.empty(); mark = "c ") {
+      const std::size_t most = most_columns - mark.size();
+      std::size_t end = rest.size() <= most ? rest.size() : rest.rfind(' ', most);
+      if (end == rest.npos || end == 0) end = most;
+      out_.add(mark, rest.substr(0, end), '\n');
+      rest.remove_prefix(std::min(rest.size(), end + 1));
+    }
   }
 
   void write_cells() {
@@ -156,7 +173,8 @@ class McnpInput {
       return fmt::format("SPH {} {}", row_of(sphere->center), sphere->radius);
     if (const auto* cylinder = std::get_if<Cylinder>(&file_.domain))
       return fmt::format("RCC {} {} {}", row_of(cylinder->base),
-                         row_of(cylinder->height * cylinder->axis.normalized()), cylinder->radius);
+                         row_of(without_signs_of_zero(cylinder->height * cylinder->axis.normalized())),
+                         cylinder->radius);
     if (const auto* revolved = std::get_if<Revolved>(&file_.domain)) return frustum(*revolved);
     return {};
   }
@@ -183,8 +201,8 @@ class McnpInput {
     const bool grows = radius_high > radius_low;  // MCNP's first end is the wider one
     const Vector<3> from = revolved.base + (grows ? high : low) * axis,
                     along = (grows ? low - high : high - low) * axis;
-    return fmt::format("TRC {} {} {} {}", row_of(from), row_of(along), std::max(radius_low, radius_high),
-                       std::min(radius_low, radius_high));
+    return fmt::format("TRC {} {} {} {}", row_of(from), row_of(without_signs_of_zero(along)),
+                       std::max(radius_low, radius_high), std::min(radius_low, radius_high));
   }
 
   void write_surfaces() {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "bernal/core/error.hpp"
+#include "files/csv_lines.hpp"
 #include "files/file_kind.hpp"
 #include "files/seal.hpp"
 #include "formats/npy.hpp"
@@ -10,7 +12,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::string_view script_ending_py = ".py", xml_ending = ".xml";
+constexpr std::string_view script_ending_py = ".py", xml_ending = ".xml", array_ending = ".npy";
 
 /// A point or a direction in Python.
 std::string tuple_of(const Vector<3>& v) { return fmt::format("({})", row_of(v, ", ")); }
@@ -81,6 +83,12 @@ std::string script_text(const Exported& file, const std::string& radii) {
 std::string write_openmc(const Exported& file, StagedFolder& staged) {
   const std::string ending = file.output.file.extension().string();
   if (ending.empty() || ending == xml_ending) return write_openmc_model(file, staged);
+  if (ending != array_ending)
+    throw Error(ErrorCode::bad_scene,
+                fmt::format("the format openmc writes arrays into a file that ends in .npy, and all levels "
+                            "into one that ends in .xml or a folder; give {} one of these endings, or none",
+                            bernal::quoted(std::string_view(file.output.file.string()))),
+                file.output.locations.whole);
   const std::string radii = file_beside(file.output.file, radii_ending);
   write_npy(staged.add(file.output.file.string()), file.size(), 3,
             [&](std::size_t i, std::size_t k) { return file.spheres.x[k][i]; });
@@ -110,6 +118,7 @@ Format openmc_format() {
           .unit = Unit::cm,
           .is_folder = true,
           .write_with_note = write_openmc,
+          .holds_levels = [](const Output& output) { return output.file.extension() != array_ending; },
           .reads =
               "OpenMC centres, .npy of N x 3, with FILE_radii.npy beside them, ‹radii› or ‹radius›; "
               "geometry.xml that bernal wrote",

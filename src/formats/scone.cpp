@@ -243,7 +243,8 @@ class SconeGeometry {
 
 std::string write_scone(const Exported& file, StagedFolder& staged) {
   require_boxes_repeat(file);
-  const LevelModel model = levels_of(file);
+  constexpr std::size_t longest_name = 30;  // nameLen of SCONE, which cuts off the rest
+  const LevelModel model = levels_of(file, longest_name);
   staged.write(file.output.file.string(), SconeGeometry(file, model).text());
   return model.in_words();
 }

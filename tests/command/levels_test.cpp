@@ -21,19 +21,6 @@ using namespace levels;
 
 constexpr const char* debian_python = "/usr/bin/python3";
 
-/// The error's words hold these.
-template <class Call>
-void expect_refusal(const Call& call, const std::vector<std::string>& words) {
-  try {
-    call();
-    ADD_FAILURE() << "accepted, where " << words.front() << " is expected";
-  } catch (const Error& error) {
-    const std::string said = error.what();
-    EXPECT_EQ(said.find('\n'), said.npos) << said;
-    for (const std::string& word : words) EXPECT_NE(said.find(word), said.npos) << word << " in " << said;
-  }
-}
-
 /// What stands at a point of a packing, by the packing alone, and how far it is from where that changes.
 struct Standing {
   std::string material;
@@ -265,7 +252,8 @@ TEST(Levels, LayersAreReadBackFromTheirShells) {
   const Folder folder;
   const auto reads = [&](const Packing& packing, const std::string& format, const std::string& name,
                          const std::string& file, const std::string& level = {}) {
-    std::filesystem::remove_all(folder / name);
+    if (format == "openmc")
+      std::filesystem::remove_all(folder / name);  // what bernal left there goes otherwise
     write_export(packing, output_of(format), folder / name);
     return import_packing(folder / file, {.level = level});
   };

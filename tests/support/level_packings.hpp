@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "support/export_packings.hpp"
@@ -138,6 +139,19 @@ inline Packing nested(bool with_third) {
   }
   core.inside = {inside_of(core, templates, 7)};
   return core;
+}
+
+/// The error's words hold these.
+template <class Call>
+void expect_refusal(const Call& call, const std::vector<std::string>& words) {
+  try {
+    call();
+    ADD_FAILURE() << "accepted, where " << words.front() << " is expected";
+  } catch (const Error& error) {
+    const std::string said = error.what();
+    EXPECT_EQ(said.find('\n'), said.npos) << said;
+    for (const std::string& word : words) EXPECT_NE(said.find(word), said.npos) << word << " in " << said;
+  }
 }
 
 }  // namespace bernal::testing::levels
