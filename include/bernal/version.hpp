@@ -25,7 +25,7 @@ struct Program {
 /// The one that runs.
 Program this_program();
 
-/// "0.2.0 (packings 25, commit 0123456789ab)"
+/// "0.2.0 (packings 25, commit 0123456789ab)"; "of unknown version" of none.
 std::string text_of(const Program&);
 
 /// Of one with another packings number, for messages: "bernal 0.2.0 (packings 24, commit 0123456789ab), and

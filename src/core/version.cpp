@@ -16,6 +16,7 @@ int packings_number() { return packings; }
 Program this_program() { return {std::string(version()), std::string(commit()), packings_number()}; }
 
 std::string text_of(const Program& program) {
+  if (program.version.empty()) return "of unknown version";  // of a packing whose files do not say
   if (program.packings_number == 0) return program.version;
   return fmt::format("{} (packings {}, commit {})", program.version, program.packings_number, program.commit);
 }

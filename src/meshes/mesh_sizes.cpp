@@ -108,7 +108,7 @@ double MeshSizes::on_sphere(const Vector<3>& p, const Vector<3>& center, double 
 }
 
 double MeshSizes::on_wall(const Vector<3>& p, const Vector<3>& normal, bool is_end) const {
-  const double most = 4 * options_.sphere_edge * largest_;
+  const double most = 2 * options_.sphere_edge * largest_;
   double size = most;
   grid_.for_each_near(boundary_.wrap(p), largest_ + most / growth, [&](std::uint32_t j, const Vector<3>& d) {
     const double r = spheres_.r[j], from = std::abs(d.norm() - r);

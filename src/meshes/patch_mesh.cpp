@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <queue>
 
 #include "bernal/core/error.hpp"
@@ -24,6 +23,12 @@ struct Waiting {
     return badness != o.badness ? badness < o.badness : face > o.face;
   }
 };
+
+/// Of the angle opposite to the shortest edge, which is acute.
+double tangent_of_least_angle(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c) {
+  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  return 2 * (b - a).cross(c - a).norm() / (ab + bc + ca - 2 * std::min({ab, bc, ca}));
+}
 
 class Mesher {
  public:
@@ -227,15 +232,15 @@ class Mesher {
     }
   }
 
-  double star_angle(std::span<const std::uint32_t> star, std::uint32_t point, const Vector<3>& at) const {
-    double least = std::numbers::pi;
+  double star_quality(std::span<const std::uint32_t> star, std::uint32_t point, const Vector<3>& at) const {
+    double least = 2;
     for (const std::uint32_t face : star) {
       const Delaunay::Face& f = delaunay_.faces()[face];
       std::array<Vector<3>, 3> c;
       for (std::size_t k = 0; k < 3; ++k)
         c[k] = f.corners[k] == point ? at : delaunay_.points()[f.corners[k]];
       if (!delaunay_.runs_counterclockwise(c[0], c[1], c[2])) return -1;
-      least = std::min(least, least_angle(c[0], c[1], c[2]));
+      least = std::min(least, tangent_of_least_angle(c[0], c[1], c[2]));
     }
     return least;
   }
@@ -265,7 +270,7 @@ class Mesher {
         if (on_sphere()) sum *= patch_.extent / sum.norm();
         if (patch_.period > 0 && (sum[0] < 0 || sum[0] >= patch_.period)) continue;
         const Vector<3> before = delaunay_.points()[p];
-        if (!(star_angle(stars[p], p, sum) > star_angle(stars[p], p, before))) continue;
+        if (!(star_quality(stars[p], p, sum) > star_quality(stars[p], p, before))) continue;
         delaunay_.move(p, sum);
         for (auto c = std::ranges::lower_bound(copies, std::array{base_[p], 0u});
              c != copies.end() && (*c)[0] == base_[p]; ++c)
@@ -302,11 +307,7 @@ class Mesher {
 }  // namespace
 
 double least_angle(const Vector<3>& a, const Vector<3>& b, const Vector<3>& c) {
-  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
-  const double twice = (b - a).cross(c - a).norm();
-  // Opposite to the shortest edge.
-  const double shortest = std::min({ab, bc, ca});
-  return std::atan2(2 * twice, ab + bc + ca - 2 * shortest);
+  return std::atan(tangent_of_least_angle(a, b, c));
 }
 
 std::vector<Vector<3>> icosahedron() {

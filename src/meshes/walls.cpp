@@ -213,8 +213,7 @@ void mesh_cylinder(SurfaceDraft& draft, const Cylinder& cylinder) {
   for (const auto& rim : rims) side.add_chain(rim, true);
   add_circles_of(draft, 0, false, true, side);
   const std::uint32_t side_patch = draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}});
-  const double margin =
-      std::min(4 * draft.options.sphere_edge * draft.sizes.largest_radius() * 3, pi * radius);
+  const double margin = std::min(6 * draft.options.sphere_edge * draft.sizes.largest_radius(), pi * radius);
   side.mesh(side_patch, false, side_size, 2 * pi * radius, margin);
 
   for (const int end : {0, 1}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -41,6 +42,14 @@ class Scales {
 
   /// Whether spheres of one size differ.
   bool differ() const { return differ_; }
+
+  /// What no sphere of that radius is below, whatever its layers.
+  double least_of(double radius) const {
+    double density = by_layers_ ? std::numeric_limits<double>::infinity() : density_;
+    for (const auto& of_class : matter_)
+      for (const SphereMatter& of : of_class) density = std::min(density, *of.density);
+    return density * cubic_metres_ * ball_volume(3, radius);
+  }
 
   /// Of all of these, the first of which has the number 0.
   std::vector<double> masses_of(const std::vector<double>& radii) {
@@ -103,7 +112,7 @@ void count_mass(Plan& plan, const SizeDistribution& radii, double cut) {
   if (!target.mass) return;
   const double coat = coat_of(plan.scene), wanted = *target.mass;
   count_mass_of::Scales scales(plan.scene);
-  if (wanted < 0.5 * scales.masses_of({radii.min() - coat}).front())
+  if (wanted < 0.5 * scales.least_of(radii.min() - coat))
     throw Error(ErrorCode::bad_scene,
                 fmt::format("a \"mass\" of {:g} kg is less than half of the smallest sphere: check the units",
                             wanted),

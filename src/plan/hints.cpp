@@ -174,13 +174,19 @@ std::string hint_of_crystal(const Plan& plan) {
       reached, plan.expected_packing_fraction);
 }
 
+/// Of spheres from a packing that has more than spheres.
+std::string hint_of_start(const Plan& plan) {
+  if (plan.start.left_out.empty()) return {};
+  return fmt::format("the start gives places and sizes of spheres alone; left out: {}", plan.start.left_out);
+}
+
 }  // namespace
 
 std::vector<std::string> hints_of(const Plan& plan) {
   std::vector<std::string> all;
   for (std::string hint : {hint_of_unit(plan), hint_of_floating(plan), hint_of_shares(plan),
                            hint_of_density(plan), hint_of_basis(plan), hint_of_pan(plan), hint_of_ends(plan),
-                           hint_of_narrow_parts(plan), hint_of_crystal(plan)})
+                           hint_of_narrow_parts(plan), hint_of_crystal(plan), hint_of_start(plan)})
     if (!hint.empty()) all.push_back(std::move(hint));
   return all;
 }

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "bernal/scene/sphere_classes.hpp"
@@ -96,13 +97,34 @@ struct PlanOfBall {
   std::optional<double> asked_radius;
 };
 
+/// Spheres that have more volume together than the ball fit into it in no way, whoever packs them.
+void require_volume(const Plan& inside) {
+  const Scene& scene = inside.scene;
+  if (!scene.target.count || !inside.start.spheres.empty() || scene.overlap > 0) return;
+  const double least = static_cast<double>(*scene.target.count) * ball_volume(3, inside.radii->min()) /
+                       volume_of(inside.domain);
+  constexpr double rounding = 1e-9;
+  if (least <= 1 + rounding) return;
+  throw Error(
+      ErrorCode::bad_scene,
+      fmt::format("{} spheres of {} {:.6g} {}{} have {:.3g} times the volume of what they are to lie in: "
+                  "ask for fewer or smaller ones",
+                  grouped(static_cast<std::uint64_t>(*scene.target.count)),
+                  scene.sizes_are_diameters ? "diameter" : "radius",
+                  (scene.sizes_are_diameters ? 2 : 1) * inside.radii->min(), name_of(scene.unit),
+                  inside.radii->max() > inside.radii->min() ? " or more" : "", least),
+      scene.target.where);
+}
+
 /// Errors of what lies inside say so, at their own place where they have one.
 PlanOfBall plan_of_ball(const Plan& around, const Inside& inside, const std::string& name, double radius,
                         const ScenesAround& scenes) {
   const Unit unit = around.scene.unit;
   try {
     const SceneInside read = read_scene_inside(inside.scene, {radius, unit});
-    return {build_inside(read.scene, scenes), read.asked_radius};
+    PlanOfBall made{build_inside(read.scene, scenes), read.asked_radius};
+    require_volume(made.plan);
+    return made;
   } catch (const Error& error) {
     const Location& at = error.location();
     const std::string of = at.line > 0 || at.file.empty() ? "" : at.file + ": ";
@@ -204,6 +226,17 @@ double expected_count_of_packings(const Plan& plan) {
   return count;
 }
 
+/// "inside of pebble / kernel: …", of what may be said of further levels already; of a long way in both ends.
+std::string said_inside(const std::string& name, const std::string& said) {
+  constexpr std::string_view begin = "inside of ", step = " / ";
+  if (!said.starts_with(begin)) return fmt::format("{}{}: {}", begin, name, said);
+  const std::string rest = said.substr(begin.size());
+  const std::size_t colon = rest.find(": "), first = rest.find(step), last = rest.rfind(step, colon);
+  if (first == rest.npos || first >= colon || first == last)
+    return fmt::format("{}{}{}{}", begin, name, step, rest);
+  return fmt::format("{}{}{}…{}", begin, name, step, rest.substr(last));
+}
+
 void add_costs(Plan& whole, const PlannedInside& made) {
   const Plan& inside = made.plan;
   const double packings = made.packings();
@@ -215,9 +248,11 @@ void add_costs(Plan& whole, const PlannedInside& made) {
   whole.items.push_back(
       {.name = inside_effect,
        .what = fmt::format(
-           "{} of {} spheres each, in balls of radius {:.6g} {}, {} ({}); {} spheres stand for themselves",
+           "{} of {} each, in balls of radius {:.6g} {}, {} ({}); {} spheres stand for themselves",
            packings == 1 ? "one packing" : grouped(static_cast<std::uint64_t>(packings)) + " packings",
-           about(inside.expected_count), made.ball, name_of(whole.scene.unit),
+           std::llround(inside.expected_count) == 1 ? "one sphere"
+                                                    : about(inside.expected_count) + " spheres",
+           made.ball, name_of(whole.scene.unit),
            made.templates ? fmt::format("turned at random in {} spheres", about(made.filled))
                           : "one in every sphere",
            made.name, about(made.filled * expected_count_of_all_levels(inside))),
@@ -228,9 +263,8 @@ void add_costs(Plan& whole, const PlannedInside& made) {
   whole.expected_seconds += packings * inside.expected_seconds;
   whole.expected_memory_bytes += inside.expected_memory_bytes + held;  // of one that is packed, and of all
   if (whole.caution.empty() && !inside.caution.empty())
-    whole.caution = fmt::format("inside of {}: {}", made.name, inside.caution);
-  for (const std::string& hint : inside.hints)
-    whole.hints.push_back(fmt::format("inside of {}: {}", made.name, hint));
+    whole.caution = said_inside(made.name, inside.caution);
+  for (const std::string& hint : inside.hints) whole.hints.push_back(said_inside(made.name, hint));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/scene/sphere_classes.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "core/lower_case.hpp"
 #include "files/sha256.hpp"
 #include "plan/start.hpp"
@@ -29,17 +31,28 @@ std::vector<double> edges_of(const PeriodicBox& box) {
   return std::vector<double>(static_cast<std::size_t>(box.dimension), *box.edge);
 }
 
-/// Of a packing, in a folder or in none, its spheres are meant, and the box that they lie in.
-void look_into_packing(Scene& scene) {
+/// What a packing has besides its spheres, where the scene that begins from them does not say it again.
+std::string left_out_of(const Scene& there, const Scene& scene) {
+  std::vector<std::string_view> parts;
+  if (!there.inside.empty() && scene.inside.empty()) parts.push_back("what lies inside of them");
+  if (has_layers(there) && !has_layers(scene)) parts.push_back("their layers");
+  if (!classes_of(there).empty() && classes_of(scene).empty()) parts.push_back("their classes");
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// Of a packing, in a folder or in none, its spheres are meant, and the box that they lie in. Returns what is
+/// left out.
+std::string look_into_packing(Scene& scene) {
   Start& start = scene.start;
   std::error_code unknown;
-  if (!start.packing && !std::filesystem::is_directory(*start.file, unknown)) return;
+  if (!start.packing && !std::filesystem::is_directory(*start.file, unknown)) return {};
   const Scene there = start.packing ? start.packing->scene : scene_in(*start.file);
   const double in_our_unit = conversion_factor(there.unit, scene.unit);
   if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty())
     for (const double edge : edges_of(*box)) start.box.push_back(in_our_unit * edge);
   if (!start.unit) start.unit = there.unit;
   if (!start.packing) *start.file = only_spheres_file_in(*start.file);
+  return left_out_of(there, scene);
 }
 
 /// The spheres as they stand there, and the digest of the very bytes that they come from.
@@ -118,7 +131,7 @@ StartSpheres read_start(Scene& scene) {
     refuse(scene, "start",
            fmt::format("there is no file or folder {}; its name is relative to the scene's file",
                        scene.start.file->string()));
-  look_into_packing(scene);
+  const std::string left_out = look_into_packing(scene);
   Start& start = scene.start;
   auto [read, digest] = spheres_of(scene);
   const std::string file = start.file->string();
@@ -138,7 +151,7 @@ StartSpheres read_start(Scene& scene) {
   if (!scene.draws()) scene.sizes.locations.whole = scene.locations.of("start");
 
   const double factor = conversion_factor(start.unit.value_or(scene.unit), scene.unit);
-  StartSpheres made{std::move(read.spheres), {}, file, read.first_line};
+  StartSpheres made{std::move(read.spheres), {}, file, read.first_line, left_out};
   if (factor != 1) {
     for (auto& column : made.spheres.x)
       for (double& x : column) x *= factor;

@@ -3,15 +3,22 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <fmt/format.h>
+
 #include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/formats/export.hpp"
 #include "bernal/formats/import.hpp"
 #include "bernal/measure/chambers.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/report/json.hpp"
+#include "bernal/result/certify_levels.hpp"
+#include "bernal/result/layers_table.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "python/bindings.hpp"
 #include "python/job.hpp"
@@ -57,21 +64,47 @@ JobPointer pack_job(Scene scene, std::optional<std::uint64_t> seed, int threads)
   });
 }
 
-JobPointer verify_job(const PackingPointer& of, std::optional<std::size_t> list, int threads, bool exact) {
+/// Of a packing that stands in no folder: that each sphere holds its layers, on all levels.
+LayersTable layers_in_memory(const Packing& packing) {
+  LayersTable found;
+  try {
+    found.layers = layers_of(packing).outer.size();
+  } catch (const Error& error) {
+    found.fault = error.what();
+  }
+  for (const PackingsInside& inside : packing.inside)
+    for (const auto& packed : inside.templates) {
+      const LayersTable deeper = layers_in_memory(*packed);
+      found.layers += deeper.layers;
+      if (found.fault.empty()) found.fault = deeper.fault;
+    }
+  return found;
+}
+
+JobPointer verify_job(const PackingPointer& of, std::optional<std::size_t> list, int threads, bool exact,
+                      const std::optional<Path>& folder) {
   return job([=](const Monitor& monitor) {
     const Scene& scene = of->scene;
-    Certificate certificate = certify(of->spheres, of->domain,
-                                      {.allowed_overlap = scene.overlap,
-                                       .gap = scene.gap,
-                                       .wall_gap = scene.wall_gap,
-                                       .arithmetic = exact ? Arithmetic::exact : Arithmetic::filtered,
-                                       .list = list.value_or(CertifyOptions::all),
-                                       .threads = threads,
-                                       .monitor = monitor});
+    Certificate certificate =
+        certify_levels(*of, {.allowed_overlap = scene.overlap,
+                             .gap = scene.gap,
+                             .wall_gap = scene.wall_gap,
+                             .arithmetic = exact ? Arithmetic::exact : Arithmetic::filtered,
+                             .list = list.value_or(CertifyOptions::all),
+                             .threads = threads,
+                             .monitor = monitor});
     if (certificate.cancelled) throw Cancelled();
     certificate.statement += certified_walls(scene);
     const auto zones = zones_in_place(scene, of->domain, of->spheres, of->classes, {.threads = threads});
     if (zones) add_to(certificate, *zones);
+    if (const auto table = folder ? layers_table_of(*of, *folder) : std::nullopt) {
+      add_to(certificate, *table);
+    } else if (const LayersTable held = layers_in_memory(*of); !held.fault.empty()) {
+      refuse(certificate, held.fault);
+    } else if (held.layers > 0) {
+      certificate.statement +=
+          fmt::format(" The {} layers of the scene fit the spheres.", grouped(held.layers));
+    }
     return text(certificate_as_json(certificate, zones));
   });
 }

@@ -208,7 +208,7 @@ std::string json_of(const Report& report) {
 }
 
 std::string json_of(const StreamedReport& report) {
-  Json json = run_json(report.packing, report.spheres, report.packing_fraction, {});
+  Json json = run_json(report.packing, report.spheres, report.packing_fraction, report.layers);
   json["not_measured"] = report.not_measured;
   add_proof(json, report);
   return sealed_text_of(json);

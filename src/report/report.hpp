@@ -25,7 +25,8 @@ struct Report {
   LayerAmounts layers = {};                       ///< what there is of each that the scene names
 };
 
-/// The same for a packing that is not in memory; `packing` has no spheres.
+/// The same for a packing that is not measured: one that is not in memory, of which `packing` has no spheres,
+/// or one inside of spheres.
 struct StreamedReport {
   const Packing& packing;
   std::uint64_t spheres;
@@ -35,6 +36,7 @@ struct StreamedReport {
   std::string hash;
   std::map<std::string, std::string> files = {};
   std::vector<std::string> made_from = {};
+  LayerAmounts layers = {};  ///< none of one that is not in memory
 };
 
 /// The digests of a result's files in report.json; empty if the text is not bernal's.

@@ -260,7 +260,8 @@ std::string scene_schema_as_json() {
     definitions["solid"]["anyOf"].push_back(refers_to(fmt::format("container_{}", kind.name)));
   SceneSchema& properties = scene.at("properties");
   properties["container"] = refers_to("container");
-  properties["container"]["description"] = "what the spheres lie in";
+  properties["container"]["description"] =
+      "what the spheres lie in; left out of a scene that lies inside of spheres, whose ball it is";
   properties.update(tables);
   properties["zone"] = array_of(std::move(properties.at("zone")), 1);
   properties["zone"]["description"] = "parts of the container with spheres of their own";
@@ -275,9 +276,9 @@ std::string scene_schema_as_json() {
                       {"description", "What is packed into what, and how."}};
   scene.erase("description");
   made.update(scene);
-  made["required"] = {"container"};
   made["anyOf"] = {SceneSchema{{"required", {"spheres"}}}, SceneSchema{{"required", {"zone"}}}};
-  made["if"] = {{"properties", {{"container", {{"properties", {{"kind", {{"const", "mesh"}}}}}}}}}};
+  made["if"] = {{"required", {"container"}},
+                {"properties", {{"container", {{"properties", {{"kind", {{"const", "mesh"}}}}}}}}}};
   made["then"] = {{"required", {"unit"}}};
   made["$defs"] = definitions;
   return made.dump(2) + '\n';

@@ -57,11 +57,10 @@ std::optional<ZonesInPlace> zones_in_place(const Scene& stated, const Domain& wh
 void add_to(Certificate& certificate, const ZonesInPlace& zones) {
   const std::size_t n = zones.misplaced.size();
   if (n > 0)
-    certificate.statement += fmt::format(" Not certified: {} sphere{} not in the place of {} zone.",
-                                         grouped(n), n == 1 ? " is" : "s are", n == 1 ? "its" : "their");
+    refuse(certificate, fmt::format("{} sphere{} not in the place of {} zone", grouped(n),
+                                    n == 1 ? " is" : "s are", n == 1 ? "its" : "their"));
   else
     certificate.statement += " Every sphere lies in the place of its zone.";
-  certificate.certified = certificate.certified && n == 0;
 }
 
 }  // namespace bernal

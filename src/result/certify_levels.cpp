@@ -28,6 +28,10 @@ bool is_unit(const std::array<double, 4>& q) {
 
 /// Where some of the spheres that could hold a packing hold none, of how many that is.
 std::string words_of(const Certificate::Level& level, std::size_t of_class) {
+  if (of_class == 0) return fmt::format("inside {}: there are no such spheres", level.name);
+  if (level.filled == 0)
+    return fmt::format("inside {}: none of {} {} holds a packing", level.name, grouped(of_class),
+                       of_class == 1 ? "sphere" : "spheres");
   const std::string filled = level.filled == of_class
                                  ? grouped(level.filled)
                                  : fmt::format("{} of {}", grouped(level.filled), grouped(of_class));
@@ -178,6 +182,8 @@ Certificate with_levels(Certificate c, const Packing& packing,
     c.statement = fmt::format("{}Not certified by levels: {}{}", c.certified ? "" : c.statement + " ", faults,
                               faults.ends_with('.') ? "" : ".");
     c.certified = false;
+  } else if (c.certified && c.spheres_of_all_levels == c.spheres) {
+    c.statement += fmt::format(" Nothing lies in them{}.", words);
   } else if (c.certified) {
     c.statement += fmt::format(
         " So are all levels{}. A rotation changes no distance: what is said of the spheres holds for all {}, "

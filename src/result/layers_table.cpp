@@ -7,6 +7,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/sphere_layers.hpp"
 #include "files/csv_lines.hpp"
 #include "result/nest_folder.hpp"
@@ -77,13 +78,21 @@ std::uint64_t read_table(const fs::path& file, const Packing& packing) {
   return count;
 }
 
+/// Whether a result has a table: arrays of spheres have none beside them.
+bool is_expected(const Packing& packing, const fs::path& folder) {
+  return has_layers(packing.scene) && spheres_of_result(folder).extension() != ".npy";
+}
+
 }  // namespace layers_table
 
 std::optional<LayersTable> layers_table_of(const Packing& packing, const std::filesystem::path& folder) {
   std::optional<LayersTable> found;
   const auto file = where_it_stands(folder / layers_as_text);
   std::error_code unknown;
-  if (std::filesystem::exists(file, unknown)) {
+  const bool is_there = std::filesystem::exists(file, unknown);
+  if (!is_there && layers_table::is_expected(packing, folder))
+    found = {.layers = 0, .fault = fmt::format("{} is missing, which has the layers", file.string())};
+  if (is_there) {
     found.emplace();
     try {
       found->layers = layers_table::read_table(file, packing);
@@ -111,9 +120,7 @@ void add_to(Certificate& certificate, const LayersTable& table) {
     statement += fmt::format(" {} has the {} layers of the scene and the spheres.", layers_as_text,
                              grouped(table.layers));
   else
-    statement =
-        fmt::format("{}Not certified: {}.", certificate.certified ? "" : statement + " ", table.fault);
-  certificate.certified = certificate.certified && table.fault.empty();
+    refuse(certificate, table.fault);
 }
 
 }  // namespace bernal

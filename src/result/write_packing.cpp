@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "bernal/core/error.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/plan/plan.hpp"
@@ -89,8 +91,12 @@ struct StagedPacking {
   Manifest manifest;               // by names in the folder of this packing
 };
 
+/// What is written of one: of a packing inside of spheres, of which there may be one for each, what it takes
+/// to read, certify and measure it.
+enum class Extent { whole, inside };
+
 StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
-                    const WriteOptions& options);
+                    const WriteOptions& options, Extent extent);
 
 /// Those inside, each in a folder of its own, and nest.json, which says which sphere holds which.
 void stage_insides(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
@@ -103,7 +109,8 @@ void stage_insides(const Packing& packing, StagedFolder& staged, const std::file
     for (std::size_t t = 0; t < files[k].packings.size(); ++t) {
       const std::string& name = files[k].packings[t];
       const StagedFolder::Below below(staged, name);
-      StagedPacking inside = stage(*packing.inside[k].templates[t], staged, folder / name, options);
+      StagedPacking inside =
+          stage(*packing.inside[k].templates[t], staged, folder / name, options, Extent::inside);
       for (const auto& [file, sha256] : inside.manifest)
         around.manifest[fmt::format("{}/{}", name, file)] = sha256;
       certificates.back().push_back(std::move(inside.certificate));
@@ -113,9 +120,82 @@ void stage_insides(const Packing& packing, StagedFolder& staged, const std::file
   around.certificate = with_levels(std::move(around.certificate), packing, certificates);
 }
 
+Measurements measured_for_report(const Packing& packing, const SceneRadii& radii,
+                                 const WriteOptions& options) {
+  const std::size_t n = packing.spheres.size();
+  return measure(packing.spheres, packing.domain, radii.asked,
+                 {.gap = packing.scene.gap,
+                  .wall_gap = packing.scene.wall_gap,
+                  .radial = {.work = distances_for_a_report, .places = places_for_a_report},
+                  .size_correlation = {.work = distances_for_a_report},
+                  .chambers = {.points = points_for_a_report},
+                  .bed = bed_options_of(packing.scene),
+                  .walls = {.work = wall_distances_for_a_report},
+                  .local = {.most_spheres = most_for_a_report,
+                            .all_of = all_cells_for_a_report,
+                            .looked_at = cells_for_a_report},
+                  .structure = {.most_spheres = most_for_a_report},
+                  .pores = {.points = n > most_for_pores ? 0 : pore_points_for_a_report},
+                  .container = packing.container,
+                  .monitor = options.monitor});
+}
+
+void stage_layers(const SphereLayers& layers, const Packing& packing, StagedFolder& staged) {
+  if (layers.empty()) return;
+  OutputFile table(staged.add(std::string(layers_as_text)));
+  write_layers_csv(table, layers, packing);
+  table.close();
+}
+
+/// scene.toml, whose text it returns.
+std::string stage_scene(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
+                        const WriteOptions& options, Manifest& manifest) {
+  const std::string scene =
+      scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);
+  staged.write("scene.toml", scene);
+  manifest["scene.toml"] = sha256_of(staged.written("scene.toml"));
+  return scene;
+}
+
+/// What the scene's outputs ask for, and the names of all files from `before` on, with those that follow.
+void stage_outputs(const Packing& packing, StagedFolder& staged, const WriteOptions& options,
+                   std::size_t before, const std::vector<std::string>& follow, StagedPacking& made) {
+  const Monitor bar{options.monitor.on_progress, {}};  // what a cancelled run has is written whole
+  const std::size_t own = staged.names().size();
+  for (const Output& output : packing.scene.outputs)
+    made.notes.push_back(write_output(packing, output, staged, bar));
+  const auto name_here = [&](std::size_t k) { return staged.names()[k].substr(staged.below().size()); };
+  for (std::size_t k = own; k < staged.names().size(); ++k)
+    add_changeable(name_here(k), staged.written(name_here(k)), made.manifest);
+  for (std::size_t k = before; k < staged.names().size(); ++k) made.manifest.try_emplace(name_here(k));
+  for (const std::string& name : follow) made.manifest[name];
+}
+
+std::vector<std::string> sources_beside(const Packing& packing, const std::filesystem::path& folder) {
+  std::vector<std::string> sources;
+  for (const std::filesystem::path& source : sources_of_scene(packing.scene.file))
+    sources.push_back(std::filesystem::proximate(source, folder).string());
+  return sources;
+}
+
+/// The rest of what is written of a packing inside of spheres.
+void stage_rest_of_inside(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
+                          const WriteOptions& options, std::size_t before, StagedPacking& made) {
+  stage_scene(packing, staged, folder, options, made.manifest);
+  stage_outputs(packing, staged, options, before, {"report.json"}, made);
+  staged.write(
+      "report.json",
+      json_of(StreamedReport{packing, packing.spheres.size(), packing.packing_fraction(), made.certificate,
+                             "it lies inside of spheres, where measuring each packing would take "
+                             "longer than making it; bernal measure of this folder makes up for it",
+                             hash_of(packing.spheres), made.manifest, sources_beside(packing, folder),
+                             layer_amounts(packing)}));
+}
+
 StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::filesystem::path& folder,
-                    const WriteOptions& options) {
+                    const WriteOptions& options, Extent extent) {
   const auto go_on = [&] { go_on_if(options); };
+  const bool is_whole = extent == Extent::whole;
   StagedPacking made;
   const std::size_t before = staged.names().size();
   const bool as_array = writes_array(packing, options);
@@ -124,67 +204,46 @@ StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::fil
   if (as_array && !packing.classes.empty())
     staged.write(std::string(classes_as_array), as_npy(packing.classes));
   if (!packing.weights.empty()) staged.write(std::string(weights_as_array), as_npy(packing.weights));
-  const std::filesystem::path vtp = as_array ? std::filesystem::path() : staged.add("spheres.vtp");
+  const bool has_vtp = is_whole && !as_array;
+  const std::filesystem::path vtp = has_vtp ? staged.add("spheres.vtp") : std::filesystem::path();
   Certificate& certificate = made.certificate = certify_written(spheres, packing, options);
   certificate.statement += certified_walls(packing.scene);
   go_on();
   Manifest& manifest = made.manifest;
   stage_insides(packing, staged, folder, options, made);
   const SphereLayers layers = as_array ? SphereLayers() : layers_of(packing);
-  const std::size_t n = packing.spheres.size();
+  if (!is_whole) {
+    stage_layers(layers, packing, staged);
+    stage_rest_of_inside(packing, staged, folder, options, before, made);
+    return made;
+  }
   const SceneRadii radii = asked_radii_of(packing);
-  const Measurements measured =
-      measure(packing.spheres, packing.domain, radii.asked,
-              {.gap = packing.scene.gap,
-               .wall_gap = packing.scene.wall_gap,
-               .radial = {.work = distances_for_a_report, .places = places_for_a_report},
-               .size_correlation = {.work = distances_for_a_report},
-               .chambers = {.points = points_for_a_report},
-               .bed = bed_options_of(packing.scene),
-               .walls = {.work = wall_distances_for_a_report},
-               .local = {.most_spheres = most_for_a_report,
-                         .all_of = all_cells_for_a_report,
-                         .looked_at = cells_for_a_report},
-               .structure = {.most_spheres = most_for_a_report},
-               .pores = {.points = n > most_for_pores ? 0 : pore_points_for_a_report},
-               .container = packing.container,
-               .monitor = options.monitor});
+  const Measurements measured = measured_for_report(packing, radii, options);
   go_on();
-  if (!as_array) {
+  if (has_vtp) {
     OutputFile file(vtp);
     write_vtp(file, packing.spheres, name_of(packing.scene.unit), measured.of_contacts.coordination,
               packing.classes, columns_of_layers(layers, packing));
     file.close();
-    if (!layers.empty()) {
-      OutputFile table(staged.add(std::string(layers_as_text)));
-      write_layers_csv(table, layers, packing);
-      table.close();
-    }
   }
-  const std::string scene =
-      scene_as_toml(scene_as_run(packing, staged, folder, options.with_mesh, manifest), folder);
+  stage_layers(layers, packing, staged);
+  const std::string scene = stage_scene(packing, staged, folder, options, manifest);
   const std::string picture = svg_of(packing.spheres, packing.domain, name_of(packing.scene.unit));
-  staged.write("scene.toml", scene);
-  manifest["scene.toml"] = sha256_of(staged.written("scene.toml"));
   if (!picture.empty()) staged.write("packing.svg", picture);
   const std::string section = middle_section(packing);
   if (!section.empty()) staged.write("section.svg", section);
   if (const auto* walls = std::get_if<Mesh>(&packing.domain); walls && walls_are_made(packing.scene))
     staged.write("container.off", as_off_file(*walls));
-  const Monitor bar{options.monitor.on_progress, {}};  // what a cancelled run has is written whole
-  const std::size_t own = staged.names().size();
-  for (const Output& output : packing.scene.outputs)
-    made.notes.push_back(write_output(packing, output, staged, bar));
-  const auto name_here = [&](std::size_t k) { return staged.names()[k].substr(staged.below().size()); };
-  for (std::size_t k = own; k < staged.names().size(); ++k)
-    add_changeable(name_here(k), staged.written(name_here(k)), manifest);
-  for (std::size_t k = before; k < staged.names().size(); ++k) manifest.try_emplace(name_here(k));
-  for (const char* name : {"report.json", "report.html"}) manifest[name];
-  std::vector<std::string> sources;
-  for (const std::filesystem::path& source : sources_of_scene(packing.scene.file))
-    sources.push_back(std::filesystem::proximate(source, folder).string());
-  const Report report{packing,  certificate, measured,     radii.all.get(),       hash_of(packing.spheres),
-                      manifest, sources,     options.cell, layer_amounts(packing)};
+  stage_outputs(packing, staged, options, before, {"report.json", "report.html"}, made);
+  const Report report{packing,
+                      certificate,
+                      measured,
+                      radii.all.get(),
+                      hash_of(packing.spheres),
+                      manifest,
+                      sources_beside(packing, folder),
+                      options.cell,
+                      layer_amounts(packing)};
   staged.write("report.json", json_of(report));
   const std::string view =
       options.view && has_view(packing.spheres.dimension()) ? view_data(packing, &measured) : std::string();
@@ -200,7 +259,7 @@ WrittenPacking write_packing(const Packing& packing, const std::filesystem::path
   if (options.all_or_nothing) interruptible.emplace(options.monitor);
   go_on_if(options);
   StagedFolder staged(folder);
-  const StagedPacking made = stage(packing, staged, folder, options);
+  const StagedPacking made = stage(packing, staged, folder, options, Extent::whole);
 
   // What the scene names stays where it is.
   std::vector<std::string> replaced = files_of_earlier_result(folder);

@@ -299,6 +299,14 @@ Certificate certify(const SphereRows& spheres, const Domain& domain, const Certi
   return certificate_of(spheres, domain, options);
 }
 
+void refuse(Certificate& c, const std::string& fault) {
+  const std::string whole = fault.ends_with('.') ? fault : fault + '.';
+  c.statement =
+      c.certified ? fmt::format("Not certified: {} Places and sizes of the spheres are not at fault.", whole)
+                  : fmt::format("{} Not certified either: {}", c.statement, whole);
+  c.certified = false;
+}
+
 std::string pair_text(const std::array<std::uint64_t, 2>& pair) {
   const auto [first, second] = pair;
   return first == second ? fmt::format("{} and its own image", first)

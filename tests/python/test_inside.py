@@ -49,6 +49,22 @@ class Inside(InFolder):
         with self.assertRaises(ValueError):
             inside["which"][0] = 1
 
+    def test_what_is_verified_is_said_of_all_levels_and_their_layers(self):
+        packing = self.packed()
+        packing.write("out")
+        proof = bernal.verify(packing)
+        self.assertTrue(proof)
+        self.assertIn("So are all levels", proof.statement)
+        self.assertIn("The 20 layers of the scene fit", proof.statement)
+        self.assertEqual([level["packings"] for level in proof.levels], [2])
+        of_folder = bernal.verify("out")
+        self.assertTrue(of_folder)
+        self.assertIn("layers.csv has the 20 layers", of_folder.statement)
+        (self.folder / "out/layers.csv").unlink()
+        without = bernal.verify("out")
+        self.assertFalse(without)
+        self.assertIn("layers.csv is missing", without.statement)
+
     def test_folders_and_pickles_hold_them(self):
         packing = self.packed()
         packing.write("out")

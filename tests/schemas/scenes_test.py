@@ -154,6 +154,10 @@ class Scenes(unittest.TestCase):
                 self.assertIn(why, refusal)
                 self.assertTrue(accepted(scene))
 
+    def test_what_lies_inside_of_spheres_needs_no_container(self):
+        self.assertTrue(accepted("[spheres]\ncount = 9\nradius = 1\n"))
+        self.assertFalse(accepted("[spheres]\ncount = 9\nradius = 1\nsead = 3\n"))
+
 
 SPHERE = 'container = { kind = "sphere", radius = 9 }\n'
 # Of tests/unit/bad_scene_test.cpp what is wrong by a name, a type or a choice.
@@ -163,7 +167,7 @@ BAD_SCENES = [
         '{ name = "a", share = 0.5, thickness = 1 }', '{ name = "a", material_density = 0 }')),
     "sead = 3\n", "[sphere]\nradius = 1\n", '[container]\nkind = "box"\n\n[periodic]\n',
     SPHERE + "[spheres]\ndiametre = 1\n", SPHERE + "[spheres]\nqqqqqqqq = 1\n",
-    '[container]\nkind = "cylindre"\n[spheres]\nradius = 1\n', "[spheres]\nradius = 1\n",
+    '[container]\nkind = "cylindre"\n[spheres]\nradius = 1\n',
     '[container]\nkind = "sphere"\nradius = 1\n', "[container]\nradius = 1\n[spheres]\nradius = 1\n",
     SPHERE + "[spheres]\ncount = 3\n", SPHERE + "[spheres]\nradius = 1\ndiameter = 1\n",
     SPHERE + "[spheres]\ncount = 3\nfill = true\nradius = 1\n",

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
 #include <string>
 
 #include "bernal/result/certify_levels.hpp"
@@ -42,6 +43,13 @@ TEST(NestFiles, HoldAllOfIt) {
   expect_same(packing, run(build(read_scene(out / "nest/scene.toml"))));
   const Packing inner = run(build(read_scene(out / "nest/inside/pebble/template-002/scene.toml")));
   EXPECT_EQ(inner.spheres.x, packing.inside[0].templates[1]->spheres.x);
+  // Of those inside, of which there may be many, no more than it takes.
+  const auto inner_folder = out / "nest/inside/pebble/template-002";
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(inner_folder))
+    names.insert(entry.path().filename().string());
+  EXPECT_EQ(names, (std::set<std::string>{"spheres.csv", "scene.toml", "report.json"}));
+  EXPECT_NE(bytes_of_file(inner_folder / "report.json").find("\"not_measured\""), std::string::npos);
   // A second result takes the place of all of the first.
   const Packing plain = run(build(parse_scene(pebbles(""), "plain.toml")));
   write_packing(plain, out / "nest");
@@ -141,6 +149,26 @@ TEST(NestFiles, OfAUserAreNotReplaced) {
       << refusal(blocked.path());
 }
 
+TEST(NestFiles, AStartSaysWhatItLeavesOut) {
+  const testing::Folder out;
+  write_packing(Nested().packed(), out / "nest");
+  const auto notes_of = [&](const std::string& keys) {
+    out.write(
+        "again.toml",
+        "unit = \"cm\"\n[container]\nkind = \"box\"\nsize = [30, 30, 30]\n[spheres]\nstart = \"nest\"\n" +
+            keys + "[[stage]]\ndo = \"insert\"\n");
+    std::string all;
+    for (const std::string& hint : build(read_scene(out / "again.toml")).hints) all += hint;
+    return all;
+  };
+  EXPECT_EQ(notes_of(""),
+            "the start gives places and sizes of spheres alone; left out: what lies inside of them, their "
+            "layers, their classes");
+  EXPECT_EQ(
+      notes_of("material = \"pebble\"\nlayers = [{ name = \"fuel\", radius = 2.5 }, { name = \"shell\" }]\n"),
+      "the start gives places and sizes of spheres alone; left out: what lies inside of them");
+}
+
 TEST(NestFiles, TablesOfLayersAreHeldAgainstEveryLevel) {
   // Layers inside of spheres too, and drawn ones, so that a sphere's number matters.
   const Nested scenes(
@@ -168,6 +196,15 @@ TEST(NestFiles, TablesOfLayersAreHeldAgainstEveryLevel) {
       << table().fault;
   add_to(certificate, table());
   EXPECT_FALSE(certificate.certified);
+  EXPECT_TRUE(certificate.statement.starts_with("Not certified: ")) << certificate.statement;
+  EXPECT_EQ(certificate.statement.find("Certified"), std::string::npos) << certificate.statement;
+  for (const auto& file : {inner, nest / "layers.csv"}) {
+    const std::string kept = bytes_of_file(file);
+    std::ofstream(inner, std::ios::binary) << written;
+    std::filesystem::remove(file);
+    EXPECT_NE(table().fault.find(file.string() + " is missing"), std::string::npos) << table().fault;
+    std::ofstream(file, std::ios::binary) << kept;
+  }
   std::ofstream(inner, std::ios::binary) << written;
   EXPECT_EQ(table().fault, "");
   rewrite(nest / "layers.csv", [](std::string& text) { text.insert(text.rfind("3\n"), "1"); });

@@ -20,6 +20,7 @@ struct StartSpheres {
   Vector<dynamic> edges = {};  ///< of the periodic box that they lie in; none in a container
   std::string file = {};       ///< where they come from, and the line of the first
   int first_line = 0;
+  std::string left_out = {};  ///< what else the packing there has and the scene does not ask for, in words
 };
 
 struct PlannedPart;

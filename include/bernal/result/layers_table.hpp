@@ -18,8 +18,9 @@ struct LayersTable {
 /// Holds layers.csv of a result, and those of what lies inside its spheres, against the layers that its
 /// scene gives its spheres: the same lines in the same order, their radii within 1e-12 of themselves, for
 /// which other mathematical libraries may round otherwise. A file that cannot be read, that ends early or
-/// goes on, and one of a scene without layers is a fault; so are spheres that the layers do not fit. Nothing
-/// where there is no table. Precondition: the packing is that of the folder. Cost: O(N).
+/// goes on, and one of a scene without layers is a fault; so are spheres that the layers do not fit, and a
+/// table that is missing though the scene names layers and the spheres stand as text. Nothing where there is
+/// no table to be. Precondition: the packing is that of the folder. Cost: O(N).
 std::optional<LayersTable> layers_table_of(const Packing&, const std::filesystem::path& folder);
 
 /// Certifies nothing where a table says otherwise, and says in the statement what was found.

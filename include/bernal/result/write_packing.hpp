@@ -34,6 +34,10 @@ struct WriteOptions {
 /// dimensions packing.svg and in three section.svg, that of `middle_plane`, and what the scene's outputs ask
 /// for, into `folder`, which is made if it does not exist.
 ///
+/// Of each packing inside of spheres, of which there may be one for each, the folder has what it takes to
+/// read, certify and measure it: its spheres, layers and scene, a report.json without measurements, and its
+/// own outputs.
+///
 /// Everything is written whole under temporary names, the spheres are read back and certified against the
 /// packing's container, and only then do they take the place of all files of an earlier result: a failure
 /// throws Error{cannot_write} and leaves earlier output untouched. Once the monitor says stop, measurements

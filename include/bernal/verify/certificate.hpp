@@ -157,6 +157,9 @@ struct SphereRows {
 /// times if they are sorted along one coordinate, else once for each slab.
 Certificate certify(const SphereRows& spheres, const Domain& domain, const CertifyOptions& options = {});
 
+/// Certifies no more, for a fault that is none of the spheres themselves: the statement begins with it.
+void refuse(Certificate&, const std::string& fault);
+
 /// "3 and 7" or "3 and its own image".
 std::string pair_text(const std::array<std::uint64_t, 2>& pair);
 /// The worst pair as text, or "none".

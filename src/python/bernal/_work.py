@@ -81,7 +81,8 @@ def verify(
     progress: Progress = None,
 ) -> Certificate:
     """Decides whether spheres overlap each other or protrude from the walls, for a packing or for the files in a folder.
-    It tests all pairs that are near each other, with exact arithmetic wherever rounding could matter.
+    It tests all pairs that are near each other, with exact arithmetic wherever rounding could matter. Packings inside of
+    spheres are certified by levels, and layers have to fit the spheres; those of a folder as its layers.csv has them.
 
     The answer is true if and only if the packing is certified. Keys are those of `bernal verify --json`: certified,
     statement, spheres, pairs_tested, overlapping_pairs, protruding_spheres, max_overlap, worst_pair, min_wall_gap, …
@@ -91,7 +92,8 @@ def verify(
     """
     of = packing if isinstance(packing, Packing) else read(packing, progress=progress)
     listed = None if list is None else _toml.whole(list, "list")
-    job = _core.verify(of._core, listed, _threads(threads), bool(exact))
+    folder = None if isinstance(packing, Packing) else _surfaces.path(packing, "the folder")
+    job = _core.verify(of._core, listed, _threads(threads), bool(exact), folder)
     certificate: Certificate = _records.record(Certificate, finish(job, progress))
     return certificate
 
