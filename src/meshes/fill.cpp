@@ -82,7 +82,7 @@ std::string end_of(const std::string& said) {
   return plain_text(text);
 }
 
-std::vector<std::string> words_for(const FillOptions& options) {
+std::vector<std::string> words_for(const TetrahedraOptions& options) {
   const fs::path tetgen = program_at("tetgen");
   if (tetgen.empty())
     throw Error(ErrorCode::bad_argument,
@@ -98,7 +98,7 @@ std::vector<std::string> words_for(const FillOptions& options) {
   return words;
 }
 
-ChildEnd run_mesher(const FillOptions& options, const fs::path& folder, const Monitor& monitor) {
+ChildEnd run_mesher(const TetrahedraOptions& options, const fs::path& folder, const Monitor& monitor) {
   constexpr std::chrono::milliseconds between_looks(50);
   constexpr std::chrono::seconds patience(1);
   const std::vector<std::string> words = words_for(options);
@@ -192,7 +192,7 @@ std::vector<Vector<3>> points_of_holes(const ConformingSurface& surface) {
   return points;
 }
 
-VolumeMesh fill(const ConformingSurface& surface, const FillOptions& options, FillReport& report,
+VolumeMesh fill(const ConformingSurface& surface, const TetrahedraOptions& options, FillReport& report,
                 const Monitor& monitor) {
   const Stopwatch watch;
   words_for(options);  // before anything is written

@@ -6,7 +6,7 @@
 
 namespace bernal {
 
-struct FillOptions {
+struct TetrahedraOptions {
   double radius_over_edge = 1.2;  ///< of the sphere through the corners over the shortest edge, at most
   double least_angle = 14;        ///< between faces of tetrahedra away from the surface, in degrees
   double goal = 0.2;              ///< of the SICN, see `improve`
@@ -27,7 +27,7 @@ struct FillReport {
 /// Throws Error{bad_argument} with the remedy where TetGen is not installed, Error{bad_mesh} where it fails,
 /// or what it leaves is not such a mesh, Error{cannot_write} where its files cannot be written, Cancelled.
 /// Cost: about 30 µs and 1 kB a tetrahedron.
-VolumeMesh fill(const ConformingSurface&, const FillOptions&, FillReport&, const Monitor& monitor = {});
+VolumeMesh fill(const ConformingSurface&, const TetrahedraOptions&, FillReport&, const Monitor& monitor = {});
 
 /// Points behind or in front of triangles where no mesh is made, one for each part of the surface that hangs
 /// together and has such a side inside of the domain.

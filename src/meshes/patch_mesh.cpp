@@ -32,7 +32,7 @@ double tangent_of_least_angle(const Vector<3>& a, const Vector<3>& b, const Vect
 
 class Mesher {
  public:
-  explicit Mesher(const Patch& patch)
+  explicit Mesher(const BoundedPart& patch)
       : patch_(patch), fixed_(patch.points.size()), delaunay_(patch.surface, patch.extent) {}
 
   PatchMesh made() {
@@ -294,7 +294,7 @@ class Mesher {
     return made;
   }
 
-  const Patch& patch_;
+  const BoundedPart& patch_;
   std::size_t fixed_;  ///< points of the boundary
   std::size_t bases_ = 0;
   Delaunay delaunay_;
@@ -320,6 +320,6 @@ std::vector<Vector<3>> icosahedron() {
   return corners;
 }
 
-PatchMesh mesh_patch(const Patch& patch) { return Mesher(patch).made(); }
+PatchMesh mesh_patch(const BoundedPart& patch) { return Mesher(patch).made(); }
 
 }  // namespace bernal

@@ -11,7 +11,7 @@
 namespace bernal {
 
 /// A part of a sphere or of a plane with its boundary as points and edges between them.
-struct Patch {
+struct BoundedPart {
   Delaunay::Surface surface = Delaunay::Surface::sphere;
   double extent = 1;                                     ///< as of `Delaunay`
   std::vector<Vector<3>> points = {};                    ///< about the sphere's centre, or in the plane z = 0
@@ -36,7 +36,7 @@ struct PatchMesh {
 /// never where they would come near the boundary, then points are moved to the middle of their neighbours as
 /// long as the least angle grows). Throws Error{bad_argument} if a part of the boundary is missing in the
 /// triangulation of its points, which are then too near to each other for the size of its edges.
-PatchMesh mesh_patch(const Patch&);
+PatchMesh mesh_patch(const BoundedPart&);
 
 /// Its corners, on the unit sphere: points to begin with.
 std::vector<Vector<3>> icosahedron();

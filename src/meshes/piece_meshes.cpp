@@ -37,7 +37,8 @@ class Numbering {
   std::vector<std::uint32_t> ids_;
 };
 
-void add_chain(Patch& patch, Numbering& number, const std::vector<std::uint32_t>& chain, bool is_closed) {
+void add_chain(BoundedPart& patch, Numbering& number, const std::vector<std::uint32_t>& chain,
+               bool is_closed) {
   for (std::size_t k = 0; k + (is_closed ? 0 : 1) < chain.size(); ++k)
     patch.edges.push_back({number(chain[k]), number(chain[(k + 1) % chain.size()])});
 }
@@ -53,7 +54,7 @@ PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
     double edge;
   };
   std::vector<Source> sources;
-  Patch patch{.surface = Delaunay::Surface::sphere, .extent = r};
+  BoundedPart patch{.surface = Delaunay::Surface::sphere, .extent = r};
   Numbering number;
   for (const Circle& circle : part.circles) {
     auto& on = patch.circles.emplace_back();

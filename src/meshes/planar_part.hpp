@@ -30,7 +30,7 @@ class PlanarPart {
 
   SurfaceDraft& draft_;
   Map flat_, back_;
-  Patch patch_{.surface = Delaunay::Surface::plane};
+  BoundedPart patch_{.surface = Delaunay::Surface::plane};
   std::vector<std::uint32_t> ids_;
   std::unordered_map<std::uint32_t, std::uint32_t> number_;
   std::vector<FaceCorners> triangles_;  ///< of vertices

@@ -240,7 +240,7 @@ void mesh_cylinder(SurfaceDraft& draft, const Cylinder& cylinder) {
 }
 
 void mesh_ball(SurfaceDraft& draft, const Sphere& sphere) {
-  Patch patch{.surface = Delaunay::Surface::sphere, .extent = sphere.radius};
+  BoundedPart patch{.surface = Delaunay::Surface::sphere, .extent = sphere.radius};
   std::vector<std::uint32_t> ids;
   for (const DraftNeck& neck : draft.necks) {
     if (!neck.wall) continue;
