@@ -81,9 +81,12 @@ VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const
   const Solids solids = solids_of(
       packing.spheres, packing.domain,
       {.contact = options.contact, .gap = options.gap, .bridge_radius = options.bridge_radius}, monitor);
-  const ConformingSurface surface = conforming_surface(
-      solids, {.sphere_edge = options.sphere_edge, .neck_edge = options.neck_edge, .solids = options.solids},
-      monitor);
+  const ConformingSurface surface = conforming_surface(solids,
+                                                       {.sphere_edge = options.sphere_edge,
+                                                        .neck_edge = options.neck_edge,
+                                                        .per_gap = options.gap_edge,
+                                                        .solids = options.solids},
+                                                       monitor);
   take_surface(surface, report);
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
@@ -118,6 +121,7 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   if (dimension != 3) refuse("meshes are made of packings of three dimensions");
   require_between(options.sphere_edge, 1, "‹mesh size›");
   require_between(options.neck_edge, 1, "‹neck size›");
+  require_between(options.gap_edge, 100, "‹gap size›");
   require_between(options.gap, 1, "‹gap›");
   require_between(options.bridge_radius, 1, "‹bridge radius›");
   if (options.order != 1 && options.order != 2) refuse("elements are of order 1 or 2");

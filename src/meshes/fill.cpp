@@ -91,8 +91,8 @@ std::vector<std::string> words_for(const FillOptions& options) {
   // Its lines are to be heard when it prints them, not when it ends.
   if (const fs::path stdbuf = program_at("stdbuf"); !stdbuf.empty()) words = {stdbuf.string(), "-oL"};
   words.push_back(tetgen.string());
-  // p: a surface; Y: it stays; M: coplanar triangles stay; A: regions; F: no files of faces; q: radius over
-  // edge and least angle; o: dihedral angles above are optimised.
+  // p: a surface; Y: it stays; M: coplanar triangles stay; A: parts that hang together are numbered; F: no
+  // files of faces; q: radius over edge and least angle; o: dihedral angles above are optimised.
   words.push_back(fmt::format("-pYMAFq{}/{}o/140", options.radius_over_edge, options.least_angle));
   words.push_back("packing.smesh");
   return words;

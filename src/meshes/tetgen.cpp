@@ -10,6 +10,7 @@
 #include "files/next_line.hpp"
 #include "files/output_file.hpp"
 #include "meshes/mesh_quality.hpp"
+#include "meshes/triangle_sides.hpp"
 
 namespace bernal {
 namespace {
@@ -101,7 +102,7 @@ void read_tetrahedra(const std::filesystem::path& file, VolumeMesh& mesh) {
   rows.next();
   const auto count = rows.number<std::size_t>();
   rows.number<int>();
-  const bool has_regions = rows.number<int>() > 0;
+  const bool has_parts = rows.number<int>() > 0;
   mesh.tetrahedra.reserve(count);
   mesh.region.reserve(count);
   for (std::size_t t = 0; t < count; ++t) {
@@ -114,12 +115,10 @@ void read_tetrahedra(const std::filesystem::path& file, VolumeMesh& mesh) {
     }
     if (sicn(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]) < 0)
       std::swap(c[2], c[3]);
-    // Regions are numbered from 1 in its files: 0 is what no seed is in.
-    const double region = has_regions ? rows.number<double>() : 1;
-    if (!(region >= 1 && region <= static_cast<double>(mesh.regions.size())))
-      refuse("TetGen made tetrahedra where no region is: is the surface closed?", file);
+    const double part = has_parts ? rows.number<double>() : 0;
+    if (!(part >= 0 && part <= static_cast<double>(count))) refuse("TetGen's parts have no numbers", file);
     mesh.tetrahedra.push_back(c);
-    mesh.region.push_back(static_cast<std::uint32_t>(region) - 1);
+    mesh.region.push_back(static_cast<std::uint32_t>(part));
   }
 }
 
@@ -155,12 +154,7 @@ void write_for_tetgen(const ConformingSurface& surface, const std::vector<Vector
     faces.add(i, ' ');
     add_place(faces, holes[i], '\n');
   }
-  faces.add(surface.regions.size(), '\n');
-  for (std::size_t i = 0; i < surface.regions.size(); ++i) {
-    faces.add(i, ' ');
-    add_place(faces, surface.regions[i].seed, ' ');
-    faces.add(i + 1, '\n');
-  }
+  faces.add(0, '\n');
   faces.close();
 }
 
@@ -173,6 +167,8 @@ VolumeMesh read_from_tetgen(const ConformingSurface& surface, const std::filesys
   mesh.periodic = surface.periodic;
   read_vertices(surface, folder / "packing.1.node", mesh);
   read_tetrahedra(folder / "packing.1.ele", mesh);
+  if (mesh.tetrahedra.empty()) refuse("TetGen made no tetrahedra", folder / "packing.1.ele");
+  take_regions_of_triangles(mesh);
   return mesh;
 }
 

@@ -21,4 +21,8 @@ struct TriangleSide {
 /// its surface. Cost: some 100 ns a tetrahedron.
 std::vector<std::array<TriangleSide, 2>> sides_of_triangles(const VolumeMesh&);
 
+/// Where regions of tetrahedra are numbers of parts that hang together: gives each part the region that its
+/// triangles say. Throws Error{bad_mesh} where that is none. Precondition: there are tetrahedra.
+void take_regions_of_triangles(VolumeMesh&);
+
 }  // namespace bernal

@@ -30,6 +30,7 @@ struct MeshFileOptions {
   double bridge_radius = 0.2;  ///< of the smaller radius
   double sphere_edge = 0.3;    ///< longest edges on spheres
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
+  double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
   int order = 1;               ///< 2: with middles of edges, on the true spheres
 };

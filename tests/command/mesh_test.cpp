@@ -1,0 +1,81 @@
+#include <cstdlib>
+#include <filesystem>
+
+#include "bernal/mesh_files/mesh_packing.hpp"
+#include "check.hpp"
+
+namespace bernal::testing {
+namespace mesh_command_test {
+
+namespace fs = std::filesystem;
+
+constexpr const char* few_spheres = R"(unit = "mm"
+[container]
+kind = "cylinder"
+radius = 1.2
+height = 2.5
+[spheres]
+count = 5
+diameter = 1
+)";
+
+struct Packed {
+  Folder folder;
+  Packed() {
+    const Ended packed = bernal({"pack", folder.write("scene.toml", few_spheres).string(), "-o", out()});
+    EXPECT_EQ(packed.status, 0) << packed.err;
+  }
+  std::string out() const { return folder / "out"; }
+};
+
+bool has_tetgen() { return fs::exists("/usr/bin/tetgen"); }
+
+TEST(MeshCommand, WritesEveryFormatAndStatesTheQuality) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  for (const MeshFormat& format : mesh_formats()) {
+    const std::string file = result.folder / ("bed" + format.ending);
+    const Ended ended =
+        bernal({"mesh", result.out(), "--to", format.name, "-o", file, "--regions", "all", "--json"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    EXPECT_TRUE(fs::exists(file)) << file;
+    const auto report = nlohmann::json::parse(ended.out);
+    EXPECT_EQ(report["spheres"], 5);
+    EXPECT_GE(report["least_sicn"], 0.1);
+    EXPECT_EQ(report["worst"].size(), 10U);
+    EXPECT_EQ(report["worst"][0]["sicn"], report["least_sicn"]);
+    std::size_t cells = 0;
+    for (const auto& count : report["histogram"]) cells += count.get<std::size_t>();
+    EXPECT_EQ(report["tetrahedra"], cells);
+    // Chords cut off about one per cent of spheres, and as much of the cylinder.
+    EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 0.01);
+  }
+  for (const char* name : {"points", "faces", "owner", "neighbour", "boundary", "cellZones"})
+    EXPECT_TRUE(fs::exists(fs::path(result.folder / "constant/polyMesh") / name)) << name;
+}
+
+TEST(MeshCommand, ElementsOfSecondOrderHoldTheStatedPorosity) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  const Ended ended = bernal({"mesh", result.out(), "--to", "abaqus", "-o", result.folder / "bed.inp",
+                              "--contact", "gap", "--order", "2", "--json"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const auto report = nlohmann::json::parse(ended.out);
+  EXPECT_GT(report["least_curved_sicn"], 0);
+  EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 1e-4);
+}
+
+TEST(MeshCommand, RefusesWhatItCannotWrite) {
+  const Packed result;
+  const std::string file = result.folder / "bed.foam";
+  expect_refused_in_one_line(bernal({"mesh", result.out(), "--to", "openfoam", "-o", file, "--order", "2"}),
+                             {"openfoam", "second order"});
+  expect_refused_in_one_line(bernal({"mesh", result.out(), "--to", "openfaom", "-o", file}), {"openfoam"});
+  expect_refused_in_one_line(bernal({"mesh", result.out(), "--to", "gmsh", "-o", "-"}), {"-o"});
+  expect_refused_in_one_line(
+      bernal({"mesh", result.out(), "--to", "gmsh", "-o", result.out() + "/spheres.csv"}), {"spheres.csv"});
+  EXPECT_FALSE(fs::exists(file));
+}
+
+}  // namespace mesh_command_test
+}  // namespace bernal::testing
