@@ -89,7 +89,7 @@ std::vector<std::string> words_for(const TetrahedraOptions& options) {
                 "meshes are made by the program \"tetgen\", which is not installed: apt-get install tetgen");
   std::vector<std::string> words;
   // Its lines are to be heard when it prints them, not when it ends.
-  if (const fs::path stdbuf = program_at("stdbuf"); !stdbuf.empty()) words = {stdbuf.string(), "-oL"};
+  if (const fs::path stdbuf = program_at("stdbuf"); !stdbuf.empty()) words = {stdbuf.string(), "--output=L"};
   words.push_back(tetgen.string());
   // p: a surface; Y: it stays; M: coplanar triangles stay; A: parts that hang together are numbered; F: no
   // files of faces; q: radius over edge and least angle; o: dihedral angles above are optimised.

@@ -37,7 +37,7 @@ Rule parse_rule(const std::string& text, const std::set<std::string>& above) {
   rule.public_headers_only = text == "public headers";
   if (text == "what stands above") rule.rooms = above;
   if (rule.public_headers_only || !rule.rooms.empty()) return rule;
-  static const std::regex item(R"(([a-z]+)(?: \(([a-z_.]+) only\))?)");
+  static const std::regex item(R"(([a-z_]+)(?: \(([a-z_.]+) only\))?)");
   for (const std::string& part : split(text, ',')) {
     std::smatch match;
     if (!std::regex_match(part, match, item))
@@ -202,7 +202,7 @@ std::map<std::string, Rule> read_rules(const fs::path& readme) {
   if (!in) throw std::runtime_error("cannot read " + readme.string());
   std::map<std::string, Rule> rules;
   std::set<std::string> above;
-  static const std::regex row(R"(\|[^|]*\| `([a-z]+)/` \|[^|]*\| ([^|]+) \|)");
+  static const std::regex row(R"(\|[^|]*\| `([a-z_]+)/` \|[^|]*\| ([^|]+) \|)");
   for (std::string text; std::getline(in, text);) {
     std::smatch match;
     if (!std::regex_match(text, match, row)) continue;
