@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "files/csv_lines.hpp"
 #include "files/file_kind.hpp"
 #include "files/seal.hpp"
@@ -83,12 +84,14 @@ std::string script_text(const Exported& file, const std::string& radii) {
 std::string write_openmc(const Exported& file, StagedFolder& staged) {
   const std::string ending = file.output.file.extension().string();
   if (ending.empty() || ending == xml_ending) return write_openmc_model(file, staged);
-  if (ending != array_ending)
-    throw Error(ErrorCode::bad_scene,
-                fmt::format("the format openmc writes arrays into a file that ends in .npy, and all levels "
-                            "into one that ends in .xml or a folder; give {} one of these endings, or none",
-                            bernal::quoted(std::string_view(file.output.file.string()))),
-                file.output.locations.whole);
+  const bool has_more = has_layers(file.packing.scene) || !file.packing.inside.empty();
+  if (ending != array_ending && has_more)
+    throw Error(
+        ErrorCode::bad_scene,
+        fmt::format("the format openmc writes spheres alone into a file that ends in .npy, and layers and "
+                    "levels into one that ends in .xml or a folder; give {} one of these endings, or none",
+                    bernal::quoted(std::string_view(file.output.file.string()))),
+        file.output.locations.whole);
   const std::string radii = file_beside(file.output.file, radii_ending);
   write_npy(staged.add(file.output.file.string()), file.size(), 3,
             [&](std::size_t i, std::size_t k) { return file.spheres.x[k][i]; });

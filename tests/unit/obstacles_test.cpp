@@ -5,7 +5,10 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/error.hpp"
@@ -84,7 +87,7 @@ TEST(Obstacles, WhatIsLeftHasTheVolumeThatIsLeft) {
               (18 - 0.5) * 5, 1e-9);
 }
 
-TEST(Obstacles, ARodAboutTheAxisFromEndToEndLeavesASolidOfRevolution) {
+TEST(Obstacles, ARodAboutTheAxisLeavesASolidOfRevolution) {
   const std::string rod =
       "obstacles = [{ kind = \"cylinder\", radius = 1, height = 80, base = [0, 0, -10] }]";
   const Domain tube = domain_with(cylinder + rod);
@@ -100,9 +103,15 @@ TEST(Obstacles, ARodAboutTheAxisFromEndToEndLeavesASolidOfRevolution) {
   const auto container = make_container(around, WallArithmetic::exact, 1e-15);
   EXPECT_TRUE(container->contains({2, 0, 10}, 1));
   EXPECT_FALSE(container->contains({2, 0, 10}, std::nextafter(1.0, 2.0)));
-  for (const char* other :
-       {"radius = 1, height = 30, base = [0, 0, 5]", "radius = 1, height = 80, base = [1, 0, -10]",
-        "radius = 1, height = 80, base = [0, 0, -10], axis = [0, 1e-3, 1]"})
+  for (const auto& [rest, base] : {std::pair{400 * 60 - 30, "[0, 0, 5]"}, {400 * 60 - 20, "[0, 0, -10]"}}) {
+    const Domain stood = domain_with(
+        cylinder +
+        fmt::format("obstacles = [{{ kind = \"cylinder\", radius = 1, height = 30, base = {} }}]", base));
+    EXPECT_TRUE(std::holds_alternative<Revolved>(stood)) << "it ends within";
+    EXPECT_NEAR(volume_of(stood), pi * rest, 1e-9 * pi * rest) << base;
+  }
+  for (const char* other : {"radius = 1, height = 80, base = [1, 0, -10]",
+                            "radius = 1, height = 80, base = [0, 0, -10], axis = [0, 1e-3, 1]"})
     EXPECT_TRUE(std::holds_alternative<Mesh>(
         domain_with(cylinder + "obstacles = [{ kind = \"cylinder\", " + other + " }]")))
         << other;
