@@ -45,7 +45,8 @@ def is_linked(object_file):
 def room_of(object_file):
     """The folder below src that it was compiled from: alone, or together with others of the folder."""
     if object_file.parent.name == "Unity":
-        return re.match(r"unity_([a-z_]+)_\d", object_file.name)[1]
+        folder = re.match(r"unity_([a-z_]+)_\d", object_file.name)[1]  # "cad_read" is one in the room "cad"
+        return folder if (SOURCE / "src" / folder).is_dir() else folder.split("_")[0]
     below = object_file.relative_to(BUILD / "src/CMakeFiles").parts
     return below[1] if len(below) > 2 else None
 
