@@ -26,7 +26,8 @@ std::vector<MeshFormat> mesh_formats();
 struct MeshFileOptions {
   std::string format;  ///< the name of one of `mesh_formats`
   ContactTreatment contact = ContactTreatment::bridge;
-  double gap = 0.01;           ///< contacts nearer than this are treated, see `SolidsOptions`
+  double gap = 0.01;           ///< contacts nearer than this are treated: over the sum of the radii, at walls
+                               ///< over the radius
   double bridge_radius = 0.2;  ///< of the smaller radius
   double sphere_edge = 0.3;    ///< longest edges on spheres
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
