@@ -1,0 +1,124 @@
+#!/usr/bin/python3
+"""Meshes of bernal in other programs: tests/clients/with_meshes.py [BERNAL]
+
+Meshes a bed of bridged spheres in a box and one in a cylinder. OpenFOAM's checkMesh finds the fluid good; CalculiX solves
+heat conduction through fluid, spheres and bridges at the first try, and the conductance lies between the bounds that hold
+for any arrangement of these volumes (Wiener 1912); meshio reads volumes and groups as bernal states them. Each is left
+out with a word where it is not installed. Debian: tetgen openfoam calculix-ccx python3-meshio. Takes half a minute.
+"""
+import os
+
+from client import *
+
+need_program("tetgen", "tetgen")
+BOX = """unit = "mm"
+[container]
+kind = "box"
+size = [5, 5, 5]
+[spheres]
+fill = true
+radius = 1
+[[stage]]
+do = "insert"
+[[stage]]
+do = "compress"
+"""
+COLUMN = """unit = "mm"
+[container]
+kind = "cylinder"
+radius = 2.5
+height = 4
+[spheres]
+count = 60
+radius = 0.5
+[[stage]]
+do = "settle"
+"""
+CONTROL = """FoamFile { version 2.0; format ascii; class dictionary; object controlDict; }
+application simpleFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1;
+writeControl timeStep; writeInterval 1;
+"""
+HEAT = """*INCLUDE, INPUT=bed.inp
+*MATERIAL, NAME=of_fluid
+*CONDUCTIVITY
+1.0
+*MATERIAL, NAME=of_solids
+*CONDUCTIVITY
+10.0
+*SOLID SECTION, ELSET=fluid, MATERIAL=of_fluid
+*SOLID SECTION, ELSET=spheres, MATERIAL=of_solids
+*SOLID SECTION, ELSET=bridges, MATERIAL=of_solids
+*STEP
+*HEAT TRANSFER, STEADY STATE
+*BOUNDARY
+x_lower, 11, 11, 0
+x_upper, 11, 11, 1
+*NODE PRINT, NSET=x_upper, TOTALS=ONLY
+RFL
+*END STEP
+"""
+
+
+def mesh(result, to, file, *options):
+    text = run(BERNAL, "mesh", "result", "--to", to, "-o", file, "--json", *options, folder=result.folder)
+    report = json.loads(text[text.index("{"):text.rindex("}") + 1])
+    expect(report["least_sicn"] >= 0.1, f"{file}: {report['tetrahedra']} tetrahedra, SICN {report['least_sicn']:.3f}")
+    return report
+
+
+def with_openfoam(result, name):
+    case = result.folder / "case"
+    (case / "system").mkdir(parents=True)
+    (case / "system" / "controlDict").write_text(CONTROL)
+    report = mesh(result, "openfoam", "case/bed.foam")
+    os.environ.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
+    said = run("checkMesh", "-case", case, folder=result.folder)
+    expect("Mesh OK" in said, f"{name}: checkMesh finds the mesh good")
+    cells = [line.split()[-1] for line in said.splitlines() if line.strip().startswith("cells:")]
+    expect(cells == [str(report["tetrahedra"])], f"{name}: it counts {cells} cells")
+
+
+def with_calculix(result):
+    report = mesh(result, "abaqus", "bed.inp", "--regions", "all")
+    (result.folder / "heat.inp").write_text(HEAT)
+    run("ccx", "heat", folder=result.folder)
+    flow = float((result.folder / "heat.dat").read_text().split()[-1])
+    length = 5  # of the box: with it, its section and the difference of temperatures
+    conducts = flow * length / length**2
+    fluid = report["meshed_porosity"]
+    parallel, series = fluid + 10 * (1 - fluid), 1 / (fluid + (1 - fluid) / 10)
+    expect(series < conducts < parallel, f"CalculiX: it conducts {conducts:.4f}, bounds {series:.4f} and {parallel:.4f}")
+
+
+def with_meshio(result, meshio):
+    report = mesh(result, "gmsh", "bed.msh", "--regions", "all")
+    mesh(result, "vtu", "bed.vtu", "--regions", "all")
+    read = meshio.read(result.folder / "bed.msh")
+    points, known = read.points, {group["name"]: group["volume"] for group in report["groups"]}
+    found = dict.fromkeys(known, 0.0)
+    for cells, groups in zip(read.cells, read.cell_data["gmsh:physical"]):
+        if cells.type != "tetra":
+            continue
+        a, b, c, d = (points[cells.data[:, k]] for k in range(4))
+        volumes = abs(((b - a) * numpy.cross(c - a, d - a)).sum(axis=1)) / 6
+        for name, (number, dimension) in read.field_data.items():
+            if dimension == 3:
+                found[name] += volumes[groups == number].sum()
+    expect(all(abs(found[name] - known[name]) < 1e-9 * known[name] for name in known), f"meshio: volumes {found}")
+    again = meshio.read(result.folder / "bed.vtu")
+    count = sum(len(cells.data) for cells in again.cells if cells.type == "tetra")
+    expect(count == report["tetrahedra"], f"meshio: {count} tetrahedra in the .vtu")
+
+
+with tempfile.TemporaryDirectory() as made:
+    box = Result(Path(made) / "box", BOX)
+    column = Result(Path(made) / "column", COLUMN)
+    if find_program("checkMesh", "openfoam"):
+        with_openfoam(box, "box")
+        with_openfoam(column, "column")
+    if find_program("ccx", "calculix-ccx"):
+        with_calculix(box)
+    meshio, numpy = find_module("meshio", "python3-meshio"), find_module("numpy", "python3-numpy")
+    if meshio and numpy:
+        with_meshio(box, meshio)
+    finish()
