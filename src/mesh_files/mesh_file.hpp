@@ -25,7 +25,18 @@ struct MeshGroups {
   /// The number of a surface by its name; surfaces.size() if there is none.
   std::uint32_t surface_named(std::string_view name) const;
 };
-MeshGroups groups_of(const VolumeMesh&, const Domain&);
+
+/// The classes of spheres that a scene tells apart, by names that every format takes, and each sphere's.
+struct ClassesOfMesh {
+  std::vector<std::string> names = {};
+  std::vector<std::uint32_t> of_sphere = {};
+};
+/// Other characters than letters, digits, _ and - become _; equal names are numbered.
+ClassesOfMesh classes_of_mesh(const Packing&);
+
+/// Where there are classes, "spheres_steel" and "surface_of_steel" stand for "spheres" and
+/// "surface_of_spheres".
+MeshGroups groups_of(const VolumeMesh&, const Domain&, const ClassesOfMesh& = {});
 
 /// "x_lower" for 0, "x_upper" for 1, up to "z_upper" for 5.
 std::string name_of_end(std::uint32_t face);

@@ -143,7 +143,7 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   report.spheres = packing.spheres.size();
   report.domain_volume = volume_of(packing.domain);
   const VolumeMesh mesh = mesh_of(packing, options, monitor, report);
-  const MeshGroups groups = groups_of(mesh, packing.domain);
+  const MeshGroups groups = groups_of(mesh, packing.domain, classes_of_mesh(packing));
   const Stopwatch writing;
   monitor.report({"write", -1, options.format});
   take_mesh(mesh, groups, report);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "bernal/core/error.hpp"
+#include "bernal/run/run.hpp"
 #include "mesh_files/poly_mesh.hpp"
 #include "meshes/fill.hpp"
 #include "meshes/improve.hpp"
@@ -16,6 +17,7 @@
 #include "meshes/second_order.hpp"
 #include "meshes/triangle_sides.hpp"
 #include "process/find_program.hpp"
+#include "support/plans.hpp"
 #include "surfaces/icosphere.hpp"
 
 namespace bernal::testing {
@@ -210,6 +212,30 @@ TEST(SecondOrder, VolumesOfCurvedTetrahedraAreThoseOfSpheres) {
     const double r = two.spheres.r[i], exact = 4 * std::numbers::pi / 3 * r * r * r;
     EXPECT_NEAR(volumes[i + 1] / exact, 1, 5e-4);
   }
+}
+
+TEST(MeshGroups, TellClassesOfSpheresByNamesThatFormatsTake) {
+  const Packing packing =
+      run(testing::plan_of("[container]\nkind = \"periodic\"\nedge = 4\n[spheres]\ncount = 6\nradius = { "
+                           "distribution = \"classes\", "
+                           "values = [0.3, 0.5, 0.4], shares = [1, 1, 1], basis = \"number\", names = [\"a "
+                           "b\", \"steel\", \"a_b\"] }\n"));
+  const ClassesOfMesh classes = classes_of_mesh(packing);
+  EXPECT_EQ(classes.names, (std::vector<std::string>{"a_b", "steel", "a_b_2"}));
+  VolumeMesh mesh;
+  mesh.regions.push_back({.group = "fluid"});
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    mesh.regions.push_back({.group = "spheres", .sphere = i});
+    mesh.patches.push_back({.kind = SurfacePatch::Kind::sphere, .index = i});
+  }
+  const MeshGroups groups = groups_of(mesh, packing.domain, classes);
+  EXPECT_EQ(groups.volumes.size(), 4u);
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::string& name = classes.names[packing.classes[i]];
+    EXPECT_EQ(groups.volumes[groups.volume_of_region[i + 1]], "spheres_" + name);
+    EXPECT_EQ(groups.surfaces[groups.surface_of_patch[i]], "surface_of_" + name);
+  }
+  EXPECT_TRUE(classes_of_mesh(Packing()).names.empty());
 }
 
 TEST(PolyMesh, FacesAreInUpperTriangularOrderAndEndsAreImages) {
