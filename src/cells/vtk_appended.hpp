@@ -40,4 +40,17 @@ class VtkAppended {
   std::string data_;
 };
 
+/// The beginning of a .vtu, up to its points.
+inline std::string vtu_head(std::string_view title, std::string_view unit, std::size_t points,
+                            std::size_t cells) {
+  return fmt::format(R"(<?xml version="1.0"?>
+<!-- {}; lengths in {} -->
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+  <UnstructuredGrid>
+    <Piece NumberOfPoints="{}" NumberOfCells="{}">
+      <Points>
+)",
+                     title, unit, points, cells);
+}
+
 }  // namespace bernal

@@ -80,14 +80,7 @@ std::string write_vtu(const CellFile& file, StagedFolder& staged) {
   const Grid grid = grid_of(file);
   const bool flat = file.cells.dimension == 2;
   VtkAppended data;
-  std::string text = fmt::format(R"(<?xml version="1.0"?>
-<!-- {}; lengths in {} -->
-<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-  <UnstructuredGrid>
-    <Piece NumberOfPoints="{}" NumberOfCells="{}">
-      <Points>
-)",
-                                 file.title(), file.unit(), grid.points.size() / 3, grid.types.size());
+  std::string text = vtu_head(file.title(), file.unit(), grid.points.size() / 3, grid.types.size());
   text += data.tag("Float64", "Points", grid.points, 3) + "      </Points>\n      <Cells>\n";
   text += data.tag("Int64", "connectivity", grid.connectivity);
   text += data.tag("Int64", "offsets", grid.offsets);

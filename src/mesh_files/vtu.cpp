@@ -31,14 +31,7 @@ std::string write_mesh_as_vtu(const MeshToWrite& file, StagedFolder& staged) {
         sicn(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]])));
   }
   VtkAppended data;
-  std::string text = fmt::format(R"(<?xml version="1.0"?>
-<!-- {}; lengths in {} -->
-<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-  <UnstructuredGrid>
-    <Piece NumberOfPoints="{}" NumberOfCells="{}">
-      <Points>
-)",
-                                 file.title, file.unit, mesh.node_count(), cells);
+  std::string text = vtu_head(file.title, file.unit, mesh.node_count(), cells);
   text += data.tag("Float64", "Points", points, 3) + "      </Points>\n      <Cells>\n";
   text += data.tag("Int64", "connectivity", nodes);
   text += data.tag("Int64", "offsets", ends);

@@ -33,7 +33,6 @@ struct SurfacePatch {
 struct MeshRegion {
   std::string group;                    ///< "fluid", "spheres" or "bridges"
   std::optional<std::uint32_t> sphere;  ///< for a piece of a sphere: its index in the packing
-  Vector<3> seed = Vector<3>::Zero();   ///< a point inside
 };
 
 /// A neck as it was meshed: its radius may be smaller than asked for.

@@ -6,47 +6,6 @@
 #include "meshes/surface_draft.hpp"
 
 namespace bernal {
-namespace {
-
-/// Distance of a point from everything that bounds the fluid; negative outside of it.
-double clearance_at(const SurfaceDraft& draft, const Vector<3>& p) {
-  double least = std::min(draft.sizes.from_walls(p), draft.sizes.from_ends(p));
-  for (const DraftPiece& piece : draft.pieces)
-    least = std::min(least, (p - piece.piece.center).norm() - piece.piece.radius);
-  for (const DraftNeck& neck : draft.necks) {
-    const Vector<3> d = p - draft.pieces[neck.pieces[0]].piece.center;
-    const double along = d.dot(neck.axis);
-    if (along > 0 && along < neck.distance)
-      least = std::min(least, (d - along * neck.axis).norm() - neck.radius);
-  }
-  return least;
-}
-
-Vector<3> point_in_fluid(const SurfaceDraft& draft) {
-  // In front of triangles of spheres and behind those of walls, some hundred of them all over the bed.
-  constexpr std::size_t tries = 400;
-  const auto& made = draft.made;
-  const std::size_t step = std::max<std::size_t>(1, made.triangles.size() / tries);
-  Vector<3> best = Vector<3>::Zero();
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < made.triangles.size(); t += step) {
-    const FaceCorners& corners = made.triangles[t];
-    const Vector<3>&a = made.vertices[corners[0]], &b = made.vertices[corners[1]],
-          &c = made.vertices[corners[2]];
-    const Vector<3> normal = (b - a).cross(c - a).normalized();
-    const double sense = made.patches[made.patch[t]].regions[0] == 0 ? -1 : 1;
-    for (const double share : {0.3, 0.8}) {
-      const Vector<3> p = (a + b + c) / 3 + sense * share * (b - a).norm() * normal;
-      if (const double clear = clearance_at(draft, p); clear > most) {
-        most = clear;
-        best = p;
-      }
-    }
-  }
-  return best;
-}
-
-}  // namespace
 
 Vector<3> inner_point(const Piece& piece) {
   // The centre, moved behind each cut until it is well behind all of them, as far as the lowest part left
@@ -63,17 +22,10 @@ Vector<3> inner_point(const Piece& piece) {
 }
 
 void add_regions(SurfaceDraft& draft) {
-  draft.made.regions.push_back({"fluid", {}, point_in_fluid(draft)});
+  draft.made.regions.push_back({"fluid", {}});
   if (!draft.options.solids) return;
-  for (const DraftPiece& piece : draft.pieces) {
-    draft.made.regions.push_back({"spheres", piece.piece.sphere, inner_point(piece.piece)});
-  }
-  for (const DraftNeck& neck : draft.necks) {
-    const Vector<3> from = draft.made.vertices[neck.rims[0][0]], to = draft.made.vertices[neck.rims[1][0]];
-    const Vector<3> center = draft.pieces[neck.pieces[0]].piece.center;
-    const double along = 0.5 * ((from - center).dot(neck.axis) + (to - center).dot(neck.axis));
-    draft.made.regions.push_back({"bridges", {}, center + along * neck.axis});
-  }
+  for (const DraftPiece& piece : draft.pieces) draft.made.regions.push_back({"spheres", piece.piece.sphere});
+  draft.made.regions.insert(draft.made.regions.end(), draft.necks.size(), MeshRegion{"bridges", {}});
 }
 
 void state(SurfaceDraft& draft) {

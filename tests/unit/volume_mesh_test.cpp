@@ -116,13 +116,13 @@ struct TwoSpheres {
 
   explicit TwoSpheres(bool solids, bool is_periodic = false) {
     add_cube(surface, 6, is_periodic);
-    surface.regions.push_back({.group = "fluid", .seed = {0.01, 0.01, 0.01}});
+    surface.regions.push_back({.group = "fluid"});
     domain = Box{.corner = Vector<3>::Zero(), .size = Vector<3>::Ones()};
     const std::array<Vector<3>, 2> centers = {Vector<3>{0.3, 0.3, 0.3}, {0.65, 0.6, 0.7}};
     for (std::uint32_t i = 0; i < 2; ++i) {
       const double radius = 0.2 + 0.05 * i;
       spheres.push_back(centers[i], radius);
-      if (solids) surface.regions.push_back({.group = "spheres", .sphere = i, .seed = centers[i]});
+      if (solids) surface.regions.push_back({.group = "spheres", .sphere = i});
       surface.patches.push_back(
           {.kind = Kind::sphere, .index = i, .regions = {solids ? static_cast<int>(i) + 1 : -1, 0}});
       add_ball(surface, centers[i], radius, static_cast<std::uint32_t>(surface.patches.size() - 1));
