@@ -35,11 +35,6 @@ const MeshWriter& mesh_writer_of(const std::string& name) {
   refuse(fmt::format("unknown format of meshes \"{}\"{}", plain_text(name), remedy(name, names)));
 }
 
-void require_between(double value, double most, const char* what) {
-  if (!(value > 0 && value < most))
-    refuse(fmt::format("{} must be above 0 and below {}, not {}", what, most, value));
-}
-
 void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   const SurfaceStatement& stated = surface.statement;
   report.necks = surface.necks.size();
@@ -119,12 +114,7 @@ std::vector<MeshFormat> mesh_formats() {
 void require_mesh_format(const MeshFileOptions& options, int dimension) {
   const MeshFormat& format = mesh_writer_of(options.format).format;
   if (dimension != 3) refuse("meshes are made of packings of three dimensions");
-  require_between(options.sphere_edge, 1, "‹mesh size›");
-  require_between(options.neck_edge, 1, "‹neck size›");
-  require_between(options.gap_edge, 100, "‹gap size›");
-  require_between(options.gap, 1, "‹gap›");
-  require_between(options.bridge_radius, 1, "‹bridge radius›");
-  if (options.order != 1 && options.order != 2) refuse("elements are of order 1 or 2");
+  for (const MeshKey& key : mesh_keys()) require_in_range(key, options);
   if (options.order > format.largest_order)
     refuse(fmt::format("the format {} has no elements of second order", format.name));
 }
