@@ -140,8 +140,6 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   require_mesh_format(options, packing.spheres.dimension());
   const MeshWriter& writer = mesh_writer_of(options.format);
   const fs::path name = named.filename(), folder = folder_of(named);
-  if (name.empty() || name == "." || name == "..")
-    throw Error(ErrorCode::cannot_write, "is a folder; give the name of a file in it", {named.string()});
   require_free(folder, names_of_files(writer, name));
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;
