@@ -20,7 +20,7 @@ using std::numbers::pi;
 constexpr double least_share = 0.2;
 
 /// What a neck joins, in whatever image; its radius is to be found.
-struct Bond {
+struct NeckBond {
   std::array<std::uint32_t, 2> spheres = {};
   std::optional<std::uint32_t> wall = {};
   std::array<int, 3> step = {};  ///< from the image of the first sphere to that of the second
@@ -40,7 +40,7 @@ class Necks {
   void make() {
     between_spheres();
     at_walls();
-    for (Bond& bond : bonds_) bond.radius = clear_of_ends(bond, bond.asked, wider);
+    for (NeckBond& bond : bonds_) bond.radius = clear_of_ends(bond, bond.asked, wider);
     limit_.assign(bonds_.size(), std::numeric_limits<double>::infinity());
     keep_apart_on_spheres();
     for (std::uint32_t b = 0; b < bonds_.size(); ++b) keep_from_others(b);
@@ -54,13 +54,13 @@ class Necks {
   static constexpr std::array<double, 12> narrower = {1,   0.95, 0.9, 0.85, 0.8, 0.75,
                                                       0.7, 0.65, 0.6, 0.55, 0.5, 0.45};
 
-  double edge_of(const Bond& bond) const { return draft_.options.neck_edge * least_radius(bond); }
-  double least_radius(const Bond& bond) const {
+  double edge_of(const NeckBond& bond) const { return draft_.options.neck_edge * least_radius(bond); }
+  double least_radius(const NeckBond& bond) const {
     const double r = spheres_.r[bond.spheres[0]];
     return bond.wall ? r : std::min(r, spheres_.r[bond.spheres[1]]);
   }
   /// The centre of the first sphere, or of the second, where the first is in the period.
-  Vector<3> center(const Bond& bond, std::size_t end) const {
+  Vector<3> center(const NeckBond& bond, std::size_t end) const {
     Vector<3> c = spheres_.center(bond.spheres[end]);
     if (end == 1)
       for (int k = 0; k < 3; ++k) c[k] += bond.step[static_cast<std::size_t>(k)] * draft_.boundary.edges[k];
@@ -71,7 +71,7 @@ class Necks {
     std::set<std::tuple<std::uint32_t, std::uint32_t, std::array<int, 3>>> known;
     const Boundary<3>& boundary = draft_.boundary;
     for (const Bridge& bridge : solids_.bridges) {
-      Bond bond;
+      NeckBond bond;
       bond.spheres = bridge.spheres;
       const Vector<3> along = (bridge.rims[1] - bridge.rims[0]).normalized();
       std::array<std::array<int, 3>, 2> image{};
@@ -111,7 +111,7 @@ class Necks {
   }
 
   /// Of some shares of a radius the first that ends of periods cut or miss clearly, or the best.
-  double clear_of_ends(const Bond& bond, double radius, std::span<const double> shares) const {
+  double clear_of_ends(const NeckBond& bond, double radius, std::span<const double> shares) const {
     if (!draft_.boundary.repeats()) return radius;
     double best = radius, most = -1;
     for (const double share : shares) {
@@ -145,7 +145,7 @@ class Necks {
     for (std::size_t i = 0; i < on.size(); ++i)
       for (std::size_t a = 0; a < on[i].size(); ++a)
         for (std::size_t b = 0; b < a; ++b) {
-          const Bond &one = bonds_[on[i][a].bond], &other = bonds_[on[i][b].bond];
+          const NeckBond &one = bonds_[on[i][a].bond], &other = bonds_[on[i][b].bond];
           const double r = spheres_.r[i];
           const double apart = std::atan2(on[i][a].direction.cross(on[i][b].direction).norm(),
                                           on[i][a].direction.dot(on[i][b].direction));
@@ -160,7 +160,7 @@ class Necks {
 
   /// A quarter of an edge stays between a neck and spheres that it does not join.
   void keep_from_others(std::uint32_t b) {
-    const Bond& bond = bonds_[b];
+    const NeckBond& bond = bonds_[b];
     const double half = 0.5 * bond.distance;
     const Vector<3> middle = center(bond, 0) + half * bond.axis;
     const double reach = half + draft_.sizes.largest_radius() + bond.radius + edge_of(bond);
@@ -184,7 +184,7 @@ class Necks {
   }
 
   void finish(std::uint32_t b) {
-    Bond& bond = bonds_[b];
+    NeckBond& bond = bonds_[b];
     if (limit_[b] < bond.radius) bond.radius = clear_of_ends(bond, limit_[b], narrower);
     DraftNeck neck;
     neck.bond = b;
@@ -223,7 +223,7 @@ class Necks {
   }
 
   /// A neck for every image of it of which a part is in the domain.
-  void place_images(const DraftNeck& neck, const Bond& bond) {
+  void place_images(const DraftNeck& neck, const NeckBond& bond) {
     const Boundary<3>& boundary = draft_.boundary;
     const Vector<3> first = center(bond, 0), middle = first + 0.5 * (neck.begin + neck.end) * neck.axis;
     std::array<int, 3> lower{}, upper{};
@@ -353,7 +353,7 @@ class Necks {
   const Solids& solids_;
   Spheres<3> spheres_;
   PointGrid<3> grid_;
-  std::vector<Bond> bonds_;
+  std::vector<NeckBond> bonds_;
   std::vector<double> limit_;  ///< of the radius, by bond
 };
 

@@ -41,7 +41,7 @@ void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, 
   }
 }
 
-bool is_in(const DraftNeck& neck, const Vector<3>& p) {
+bool is_in_neck(const DraftNeck& neck, const Vector<3>& p) {
   const Vector<3> d = p - neck.center;
   const double height = d.dot(neck.axis);
   return height > neck.begin && height < neck.end && (d - height * neck.axis).norm() < neck.radius;
@@ -127,7 +127,7 @@ class BoxWalls {
       if (std::ranges::any_of(crossed,
                               [&](const Piece* p) { return (middle - p->center).norm() < p->radius; }) ||
           std::ranges::any_of(draft_.necks,
-                              [&](const DraftNeck& neck) { return neck.is_cut && is_in(neck, middle); }))
+                              [&](const DraftNeck& neck) { return neck.is_cut && is_in_neck(neck, middle); }))
         continue;
       auto& chain = chains.emplace_back(1, stops[s].second);
       for (const double share : spaced(length, 1, [&](double t) { return size(from + t * length); }))
