@@ -58,6 +58,7 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
         fmt::format("meshes are made in boxes, cylinders and spheres of three dimensions, not in a {}",
                     name_of(solids.domain)));
   SurfaceDraft draft(solids, options);
+  deepen_caps(draft);
   add_necks(draft);
   add_circles(draft);
   add_neck_traces(draft);
