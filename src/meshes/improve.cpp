@@ -271,14 +271,21 @@ class Improver {
     return true;
   }
 
-  /// Puts a vertex into the middle of the tetrahedron and joins it to the faces around a cavity, which grows
-  /// over the neighbours behind faces that it would make poor tetrahedra with.
+  /// Puts a vertex into the middle of the tetrahedron, or else of one of its edges.
   bool insert(std::uint32_t t) {
+    const TetrahedronCorners c = near_.corners(t);
+    if (insert(t, (near_.at(c[0]) + near_.at(c[1]) + near_.at(c[2]) + near_.at(c[3])) / 4)) return true;
+    return std::ranges::any_of(edges_of_tetrahedron, [&](const auto& edge) {
+      return insert(t, 0.5 * (near_.at(c[static_cast<std::size_t>(edge[0])]) +
+                              near_.at(c[static_cast<std::size_t>(edge[1])])));
+    });
+  }
+
+  /// Joins a vertex at this place to the faces around a cavity, which grows over the neighbours behind faces
+  /// that it would make poor tetrahedra with.
+  bool insert(std::uint32_t t, const Vector<3>& place) {
     constexpr std::size_t largest_cavity = 32;
     std::vector<std::uint32_t> cavity{t};
-    const TetrahedronCorners& c = near_.corners(t);
-    Vector<3> place = Vector<3>::Zero();
-    for (const std::uint32_t vertex : c) place += near_.at(vertex) / 4;
     const std::uint32_t vertex = near_.add_vertex(place);
     std::vector<TetrahedronCorners> made, best_made;
     std::vector<std::uint32_t> best_cavity;
