@@ -3,16 +3,14 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include "bernal/cells/write_cells.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "say_unpublished.hpp"
 
 using namespace bernal;
 
@@ -63,22 +61,18 @@ void look_at_cells(const Packing& packing, const ShapedCells& made, const CellsC
     print_statistics(packing, made.cells, found);
 }
 
-int write_cells_of(CellsCall call) try {
+int write_cells_of(CellsCall call) {
   if (call.file.empty() != call.options.format.empty())
     throw Error(ErrorCode::bad_argument, "a file of cells needs both --to, its format, and -o, its name");
   if (call.resolution > 0) call.options.resolution = call.resolution;
-  if (call.file == "-")
-    throw Error(ErrorCode::bad_argument, "a format may need several files; give -o the name of one");
+  require_named_file(call.file);
   if (!call.file.empty() && call.table.lexically_normal() == call.file.lexically_normal())
     throw Error(ErrorCode::bad_argument, "-o and --table name the same file; give each its own",
                 {call.file.string()});
-  std::optional<tbb::global_control> limit;
-  if (call.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
+  const auto limit = limited_to(call.threads);
   ProgressBar bar(call.quiet || call.json);
   bar.now("read");
-  const Packing packing = read_packing(call.folder);
-  say_if_unpublished(call.folder);
+  const Packing packing = read_result(call.folder);
   if (!call.options.format.empty()) require_cell_format(call.options, packing.spheres.dimension());
   std::optional<ShapedCells> made;
   if (call.options.format.empty() || call.json || !call.table.empty()) {
@@ -92,20 +86,8 @@ int write_cells_of(CellsCall call) try {
   const WrittenCells written =
       write_cells(packing, call.options, call.file, bar.monitor(), made ? &*made : nullptr);
   bar.clear();
-  if (call.quiet) return exit_code::done;
-  say(stderr, "{:<10} {}\n", call.options.format, written.note);
-  for (std::size_t i = 0; i < written.files.size(); ++i)
-    say(stderr, "{:<10} {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
+  if (!call.quiet) say_written(call.options.format, written.note, written.files);
   return exit_code::done;
-} catch (const Cancelled&) {
-  if (!call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
-  return exit_code::not_reached;
-}
-
-std::vector<std::string> names_of_cell_formats() {
-  std::vector<std::string> names;
-  for (const CellFormat& format : cell_formats()) names.push_back(format.name);
-  return names;
 }
 
 std::vector<Entry> entries_of_cell_formats() {
@@ -127,7 +109,7 @@ Command cells_command() {
       {folder(required({"RESULT", &call->folder, "What bernal pack wrote", "DIR"})),
        offering(
            {"--to", &options.format, "The format, one of those below; else statistics are printed", "FORMAT"},
-           names_of_cell_formats()),
+           names_of(cell_formats())),
        {"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"},
        within({"--sides", &options.cells.sides, "Flat walls around a round one; 64 if absent", "N"}, 8, 1024),
        {"--radius", &options.strut_radius, "Of the struts of a foam", "R"},
@@ -157,5 +139,5 @@ Command cells_command() {
                     {"bernal cells out --to struts --density 0.03 -o foam.vtp", "an open foam"},
                     {"bernal cells out --to nrrd --resolution 200 -o grains.nrrd", "an image of grains"}},
        .exit_codes = {{"0", "done"}, {"2", "bad input"}, {"3", "stopped by Ctrl-C, nothing written"}}},
-      [call] { return write_cells_of(*call); }};
+      [call] { return all_or_nothing(call->quiet, [&] { return write_cells_of(*call); }); }};
 }

@@ -9,12 +9,11 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/scene_reference.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "say_unpublished.hpp"
 
 using namespace bernal;
 
@@ -27,33 +26,19 @@ struct ExportCall {
   bool quiet = false;
 };
 
-int export_result(const ExportCall& call) try {
+int export_result(const ExportCall& call) {
   const Output output = output_of(call.format, call.words);  // before a large packing is read
-  if (call.file == "-")
-    throw Error(ErrorCode::bad_argument, "a format may need several files; give -o the name of one");
+  require_named_file(call.file);
   ProgressBar bar(call.quiet);
   const Monitor monitor = bar.monitor();
   bar.now("read");
-  const Packing packing = read_packing(call.folder);
-  say_if_unpublished(call.folder);
+  const Packing packing = read_result(call.folder);
   if (interrupted()) throw Cancelled();
   bar.now("write");
   const WrittenExport written = write_export(packing, output, call.file, monitor);
   bar.clear();
-  if (call.quiet) return exit_code::done;
-  say(stderr, "{:<10} {}\n", call.format, written.note);
-  for (std::size_t i = 0; i < written.files.size(); ++i)
-    say(stderr, "{:<10} {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
+  if (!call.quiet) say_written(call.format, written.note, written.files);
   return exit_code::done;
-} catch (const Cancelled&) {
-  if (!call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
-  return exit_code::not_reached;
-}
-
-/// The option of a key: "--contact-gap" of contact_gap.
-std::string option_of(std::string key) {
-  std::ranges::replace(key, '_', '-');
-  return "--" + key;
 }
 
 std::string dimensions_in_words(const ExportFormat& format) {
@@ -63,18 +48,12 @@ std::string dimensions_in_words(const ExportFormat& format) {
                      format.most_dimensions);
 }
 
-std::vector<std::string> names_of_formats() {
-  std::vector<std::string> names;
-  for (const ExportFormat& format : export_formats()) names.push_back(format.name);
-  return names;
-}
-
 /// The list of formats for the help, two lines each.
 std::vector<Entry> entries_of_formats() {
   std::vector<Entry> entries;
   for (const ExportFormat& format : export_formats()) {
     std::string options;
-    for (const std::string& key : format.keys) options += fmt::format(" {}", option_of(key));
+    for (const std::string& key : format.keys) options += fmt::format(" {}", option_of_key(key));
     entries.push_back(
         {format.name, fmt::format("{}\nlengths in {}{}, {}; {} dimensions;{}", format.what, format.unit,
                                   format.unit == "the scene's" ? " unit" : "",
@@ -117,7 +96,7 @@ Command export_command() {
       {folder(required(
            {"RESULT", &call->folder, "What bernal pack wrote: its spheres and scene.toml are read", "DIR"})),
        offering(required({"--to", &call->format, "The format, one of those below", "FORMAT"}),
-                names_of_formats()),
+                names_of(export_formats())),
        required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"})},
       {.text =
            "The line that is printed says unit, sizes, density, types and the largest overlap that "
@@ -134,12 +113,12 @@ Command export_command() {
                     {"bernal export out --to povray -o bed.pov && povray +A +W1200 +H900 bed.pov",
                      "a picture"}},
        .exit_codes = {{"0", "done"}, {"2", "bad input"}, {"3", "stopped by Ctrl-C, nothing written"}}},
-      [call] { return export_result(*call); }};
+      [call] { return all_or_nothing(call->quiet, [&] { return export_result(*call); }); }};
   for (const ExportKey& key : export_keys()) {
     std::string placeholder = key.name;
     for (char& c : placeholder) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     command.options.push_back(
-        offering({option_of(key.name),
+        offering({option_of_key(key.name),
                   [call = call.get(), name = key.name](const std::string& word) { call->words[name] = word; },
                   fmt::format("{} ({})", key.what, formats_with(key.name)), placeholder},
                  words_of(key.name)));

@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "measured.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
 
 using namespace bernal;
@@ -54,11 +55,10 @@ void print_imported(const ImportedPacking& imported, const WrittenPacking& writt
     say(stderr, "overlap    {}, ratio {:.3g}\n", pair_text(pair), ratio);
   for (const auto& [sphere, gap] : c.protrusions)
     say(stderr, "protrudes  {}, gap {:.3g} of its radius\n", sphere, gap);
-  for (std::size_t i = 0; i < written.files.size(); ++i)
-    say(stderr, "{:<10} {}\n", i == 0 ? "files" : "", plain_text(written.files[i].string(), 5000));
+  say_files(written.files);
 }
 
-int import_file(const ImportCall& call) try {
+int import_file(const ImportCall& call) {
   const ImportOptions options = options_of(call);
   ProgressBar bar(call.quiet);
   bar.now("read");
@@ -72,15 +72,6 @@ int import_file(const ImportCall& call) try {
   bar.clear();
   if (!call.quiet) print_imported(imported, written);
   return exit_code::done;
-} catch (const Cancelled&) {
-  if (!call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
-  return exit_code::not_reached;
-}
-
-std::vector<std::string> names_of_import_formats() {
-  std::vector<std::string> names;
-  for (const ImportFormat& format : import_formats()) names.push_back(format.name);
-  return names;
 }
 
 /// The list of formats for the help, two lines each.
@@ -109,7 +100,7 @@ Command import_command() {
            {"-o,--output", &call->folder, "Folder for the result; made if it does not exist", "DIR"})),
        offering({"--from", &options.format,
                  "The format, one of those below; if absent it is told by the file", "FORMAT"},
-                names_of_import_formats()),
+                names_of(import_formats())),
        {"--columns", &options.columns,
         "Of a table, in its order: coordinates, r for the radius or d for the diameter, - for another "
         "column; or "
@@ -173,5 +164,5 @@ Command import_command() {
        .exit_codes = {{"0", "imported, certified or not"},
                       {"2", "bad input"},
                       {"3", "stopped by Ctrl-C, nothing written"}}},
-      [call] { return import_file(*call); }};
+      [call] { return all_or_nothing(call->quiet, [&] { return import_file(*call); }); }};
 }

@@ -1,17 +1,16 @@
+#include <map>
 #include <memory>
 #include <optional>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/mesh_files/mesh_packing.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "say_unpublished.hpp"
 
 using namespace bernal;
 
@@ -19,18 +18,11 @@ namespace {
 
 struct MeshCall {
   std::filesystem::path folder, file;
-  MeshFileOptions options;
-  std::string contact = "bridge", regions = "fluid";
+  std::string format;
+  std::map<std::string, std::string> words;  ///< of the keys
   int threads = 0;
   bool json = false, quiet = false;
 };
-
-ContactTreatment treatment_named(const std::string& name) {
-  if (name == "bridge") return ContactTreatment::bridge;
-  if (name == "gap") return ContactTreatment::gap;
-  if (name == "shrink") return ContactTreatment::shrink;
-  return ContactTreatment::cap;
-}
 
 std::string text_of_place(const Vector<3>& p) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0], p[1], p[2]);
@@ -76,43 +68,25 @@ void print_report(const BedMeshReport& report, std::string_view unit) {
   fmt::print("\n");
 }
 
-int mesh_of(MeshCall call) try {
-  if (call.file == "-")
-    throw Error(ErrorCode::bad_argument, "a mesh may need several files; give -o the name of one");
-  call.options.contact = treatment_named(call.contact);
-  call.options.solids = call.regions == "all";
-  std::optional<tbb::global_control> limit;
-  if (call.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
+int mesh_of(const MeshCall& call) {
+  require_named_file(call.file);
+  const MeshFileOptions options = mesh_options_of(call.format, call.words);
+  const auto limit = limited_to(call.threads);
   ProgressBar bar(call.quiet || call.json);
   bar.now("read");
-  const Packing packing = read_packing(call.folder);
-  say_if_unpublished(call.folder);
-  const MeshedPacking meshed = mesh_packing(packing, call.options, call.file, bar.monitor());
+  const Packing packing = read_result(call.folder);
+  const MeshedPacking meshed = mesh_packing(packing, options, call.file, bar.monitor());
   bar.clear();
   const BedMeshReport& report = meshed.report;
   if (call.json)
     fmt::print("{}", mesh_report_as_json(packing, report));
   else if (!call.quiet)
     print_report(report, name_of(packing.scene.unit));
-  if (!call.quiet) {
-    say(stderr, "{:<10} {}\n", call.options.format, meshed.note);
-    for (std::size_t i = 0; i < meshed.files.size(); ++i)
-      say(stderr, "{:<10} {}\n", i == 0 ? "files" : "", plain_text(meshed.files[i].string(), 5000));
-  }
+  if (!call.quiet) say_written(call.format, meshed.note, meshed.files);
   if (report.keeps_promise()) return exit_code::done;
   say(stderr, "bernal: the least SICN is {:.4f}, below {}: smaller --mesh-size and --neck-size help\n",
       report.least_sicn, BedMeshReport::promised_sicn);
   return exit_code::not_reached;
-} catch (const Cancelled&) {
-  if (!call.quiet) say(stderr, "bernal: stopped by the user; nothing is written\n");
-  return exit_code::not_reached;
-}
-
-std::vector<std::string> names_of_mesh_formats() {
-  std::vector<std::string> names;
-  for (const MeshFormat& format : mesh_formats()) names.push_back(format.name);
-  return names;
 }
 
 std::vector<Entry> entries_of_mesh_formats() {
@@ -122,40 +96,27 @@ std::vector<Entry> entries_of_mesh_formats() {
   return entries;
 }
 
+Option option_of(const MeshKey& key, std::map<std::string, std::string>& words) {
+  Option option{option_of_key(key.name),
+                [&words, name = key.name](const std::string& word) { words[name] = word; }, key.what,
+                key.placeholder};
+  if (!key.words.empty()) return one_of(std::move(option), key.words);
+  if (std::holds_alternative<int MeshFileOptions::*>(key.to))
+    return within(std::move(option), static_cast<int>(key.least), static_cast<int>(key.most));
+  return within(std::move(option), key.least, key.most);
+}
+
 }  // namespace
 
 Command mesh_command() {
   const auto call = std::make_shared<MeshCall>();
-  MeshFileOptions& options = call->options;
-  return {
+  Command command{
       "mesh",
       "Tetrahedra between spheres, and in them: beds for flow, heat and loads",
       {folder(required({"RESULT", &call->folder, "What bernal pack wrote", "DIR"})),
-       offering(required({"--to", &options.format, "The format, one of those below", "FORMAT"}),
-                names_of_mesh_formats()),
-       required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"}),
-       one_of({"--contact", &call->contact, "What is done where spheres touch or nearly do; bridge if absent",
-               "WORD"},
-              {"bridge", "gap", "shrink", "cap"}),
-       within({"--gap", &options.gap, "Contacts nearer than this, in radii; 0.01 if absent", "SHARE"}, 1e-6,
-              0.5),
-       within({"--bridge-radius", &options.bridge_radius, "Of bridges, in radii; 0.2 if absent", "SHARE"},
-              0.01, 0.7),
-       within({"--mesh-size", &options.sphere_edge, "Edges on spheres, in radii; 0.3 if absent", "SHARE"},
-              0.02, 0.9),
-       within({"--neck-size", &options.neck_edge, "Edges where bridges begin, in radii; 0.15 if absent",
-               "SHARE"},
-              0.01, 0.9),
-       within({"--gap-size", &options.gap_edge,
-               "Edges where surfaces are near each other, in widths of the gap; 4 if absent", "WIDTHS"},
-              0.5, 50.0),
-       one_of({"--regions", &call->regions, "What is meshed: the fluid, or the spheres too; fluid if absent",
-               "WORD"},
-              {"fluid", "all"}),
-       within({"--order", &options.order, "2: elements with middles of edges, on the true spheres", "N"}, 1,
-              2),
-       threads_option(call->threads, "the mesh"), json_option(call->json),
-       quiet_option(call->quiet, "Print nothing but errors")},
+       offering(required({"--to", &call->format, "The format, one of those below", "FORMAT"}),
+                names_of(mesh_formats())),
+       required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"})},
       {.text =
            "Spheres that touch are treated first: bridge joins them by cylinders, gap makes only these "
            "smaller, "
@@ -175,5 +136,10 @@ Command mesh_command() {
        .exit_codes = {{"0", "the mesh is there, and its least SICN is 0.1 or more"},
                       {"2", "bad input, or no mesh"},
                       {"3", "written, with a least SICN below 0.1; or stopped by Ctrl-C, nothing written"}}},
-      [call] { return mesh_of(*call); }};
+      [call] { return all_or_nothing(call->quiet, [&] { return mesh_of(*call); }); }};
+  for (const MeshKey& key : mesh_keys()) command.options.push_back(option_of(key, call->words));
+  command.options.push_back(threads_option(call->threads, "the mesh"));
+  command.options.push_back(json_option(call->json));
+  command.options.push_back(quiet_option(call->quiet, "Print nothing but errors"));
+  return command;
 }

@@ -65,6 +65,9 @@ MeshWriter abaqus_of_mesh();
 MeshWriter openfoam_of_mesh();
 MeshWriter vtu_of_mesh();
 
+/// Throws Error{bad_argument} where a number of the options is not in the range of its key.
+void require_in_range(const MeshKey&, const MeshFileOptions&);
+
 /// Numbers of what is in each group, in their order: [k] of those with group(i) = k.
 template <class Group>
 std::vector<std::vector<std::uint32_t>> by_group(std::size_t count, std::size_t groups, const Group& group) {

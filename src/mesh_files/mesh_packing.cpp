@@ -35,11 +35,6 @@ const MeshWriter& mesh_writer_of(const std::string& name) {
   refuse(fmt::format("unknown format of meshes \"{}\"{}", plain_text(name), remedy(name, names)));
 }
 
-void require_between(double value, double most, const char* what) {
-  if (!(value > 0 && value < most))
-    refuse(fmt::format("{} must be above 0 and below {}, not {}", what, most, value));
-}
-
 void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   const SurfaceStatement& stated = surface.statement;
   report.necks = surface.necks.size();
@@ -73,9 +68,16 @@ void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, BedMeshReport& 
     ++report.groups[groups.volume_of(mesh, t)].tetrahedra;
 }
 
-/// The mesh, with what it is like so far.
-VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
-                   BedMeshReport& report) {
+/// The mesh, its names, and what it is like.
+struct NamedMesh {
+  VolumeMesh mesh;
+  MeshGroups groups;
+};
+NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
+                  BedMeshReport& report) {
+  if (packing.spheres.empty()) refuse("there are no spheres to mesh around");
+  report.spheres = packing.spheres.size();
+  report.domain_volume = volume_of(packing.domain);
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
   const Solids solids = solids_of(
@@ -98,7 +100,9 @@ VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const
     make_second_order(mesh, solids.spheres, solids.domain);
     report.parts.push_back({"second order", curving.seconds()});
   }
-  return mesh;
+  MeshGroups groups = groups_of(mesh, packing.domain, classes_of_mesh(packing));
+  take_mesh(mesh, groups, report);
+  return {std::move(mesh), std::move(groups)};
 }
 
 std::vector<std::string> names_of_files(const MeshWriter& writer, const fs::path& name) {
@@ -119,14 +123,16 @@ std::vector<MeshFormat> mesh_formats() {
 void require_mesh_format(const MeshFileOptions& options, int dimension) {
   const MeshFormat& format = mesh_writer_of(options.format).format;
   if (dimension != 3) refuse("meshes are made of packings of three dimensions");
-  require_between(options.sphere_edge, 1, "‹mesh size›");
-  require_between(options.neck_edge, 1, "‹neck size›");
-  require_between(options.gap_edge, 100, "‹gap size›");
-  require_between(options.gap, 1, "‹gap›");
-  require_between(options.bridge_radius, 1, "‹bridge radius›");
-  if (options.order != 1 && options.order != 2) refuse("elements are of order 1 or 2");
+  for (const MeshKey& key : mesh_keys()) require_in_range(key, options);
   if (options.order > format.largest_order)
     refuse(fmt::format("the format {} has no elements of second order", format.name));
+}
+
+BedMeshReport measure_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor) {
+  require_mesh_format(options, packing.spheres.dimension());
+  BedMeshReport report;
+  mesh_of(packing, options, monitor, report);
+  return report;
 }
 
 MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& options, const fs::path& named,
@@ -134,19 +140,12 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   require_mesh_format(options, packing.spheres.dimension());
   const MeshWriter& writer = mesh_writer_of(options.format);
   const fs::path name = named.filename(), folder = folder_of(named);
-  if (name.empty() || name == "." || name == "..")
-    throw Error(ErrorCode::cannot_write, "is a folder; give the name of a file in it", {named.string()});
   require_free(folder, names_of_files(writer, name));
-  if (packing.spheres.empty()) refuse("there are no spheres to mesh around");
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;
-  report.spheres = packing.spheres.size();
-  report.domain_volume = volume_of(packing.domain);
-  const VolumeMesh mesh = mesh_of(packing, options, monitor, report);
-  const MeshGroups groups = groups_of(mesh, packing.domain, classes_of_mesh(packing));
+  const auto [mesh, groups] = mesh_of(packing, options, monitor, report);
   const Stopwatch writing;
   monitor.report({"write", -1, options.format});
-  take_mesh(mesh, groups, report);
   StagedFolder staged(folder);
   const std::string title = fmt::format("bernal {}: mesh of {} spheres in a {}", text_of(this_program()),
                                         packing.spheres.size(), name_of(packing.domain));

@@ -2,8 +2,11 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "bernal/core/monitor.hpp"
@@ -35,6 +38,25 @@ struct MeshFileOptions {
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
   int order = 1;               ///< 2: with middles of edges, on the true spheres
 };
+
+/// A member of the options as users give it: `--mesh-size 0.2` to the command, `mesh_size=0.2` in Python.
+struct MeshKey {
+  std::string name;         ///< "mesh_size"
+  std::string what;         ///< with its default
+  std::string placeholder;  ///< of its value: "SHARE"
+  std::variant<double MeshFileOptions::*, int MeshFileOptions::*, bool MeshFileOptions::*,
+               ContactTreatment MeshFileOptions::*>
+      to;
+  double least = 0, most = 0;           ///< of a number
+  std::vector<std::string> words = {};  ///< else what it may be: of a flag the word for false first
+};
+/// All of them, in the order in which users see them.
+const std::vector<MeshKey>& mesh_keys();
+
+/// The options for a format's name and the values of some keys: {{"mesh_size", "0.2"}}. Throws
+/// Error{bad_argument}, with the nearest name, for a key that is not there or a value that it does not take.
+MeshFileOptions mesh_options_of(std::string_view format,
+                                const std::map<std::string, std::string>& words = {});
 
 /// What the mesh of a packing is like.
 struct BedMeshReport {
@@ -98,6 +120,9 @@ void require_mesh_format(const MeshFileOptions&, int dimension);
 /// result would be overwritten; Cancelled. Cost: about 0.1 s, 1,000 tetrahedra and 1 MB a sphere.
 MeshedPacking mesh_packing(const Packing&, const MeshFileOptions&, const std::filesystem::path& file,
                            const Monitor& monitor = {});
+
+/// What the mesh would be like that `mesh_packing` writes; writes nothing. Throws as that.
+BedMeshReport measure_mesh(const Packing&, const MeshFileOptions&, const Monitor& monitor = {});
 
 /// The report as a JSON object: what `bernal mesh --json` prints.
 std::string mesh_report_as_json(const Packing&, const BedMeshReport&);
