@@ -43,6 +43,7 @@ TetrahedraNear::TetrahedraNear(VolumeMesh& mesh)
 bool TetrahedraNear::is_outside(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
   FaceCorners of = {a, b, c};
   std::ranges::sort(of);
+  if (!is_fixed_[of[0]]) return false;
   for (std::uint32_t k = first_outside_[of[0]]; k < first_outside_[of[0] + 1]; ++k)
     if (outside_[k][0] == of[1] && outside_[k][1] == of[2]) return true;
   return false;
