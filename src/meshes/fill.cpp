@@ -160,11 +160,33 @@ double volume_error(const VolumeMesh& mesh, const ConformingSurface& surface) {
 
 std::vector<Vector<3>> points_of_holes(const ConformingSurface& surface) {
   constexpr double into = 0.02;  // of an edge
+  const auto is_wall = [&](std::size_t t) {
+    return surface.patches[surface.patch[t]].kind == SurfacePatch::Kind::wall;
+  };
+  // Walls stand around something in the domain where they enclose a negative volume, bridges' feet left out.
+  DisjointSets walls(surface.vertices.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (is_wall(t))
+      for (const std::size_t k : {1, 2}) walls.unite(surface.triangles[t][0], surface.triangles[t][k]);
+  std::map<std::uint32_t, Bounds<3>> bounds;
+  const auto wall_of = [&](std::size_t t) { return walls.find(surface.triangles[t][0]); };
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (is_wall(t))
+      for (const std::uint32_t c : surface.triangles[t])
+        bounds.try_emplace(wall_of(t), Bounds<3>::of_nothing()).first->second.add(surface.vertices[c]);
+  std::map<std::uint32_t, double> volume;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (!is_wall(t)) continue;
+    const FaceCorners& c = surface.triangles[t];
+    const Vector<3> middle = bounds.at(wall_of(t)).center();
+    volume[wall_of(t)] += (surface.vertices[c[0]] - middle)
+                              .dot((surface.vertices[c[1]] - middle).cross(surface.vertices[c[2]] - middle));
+  }
   const auto is_hole = [&](std::size_t t) {
     const SurfacePatch& patch = surface.patches[surface.patch[t]];
-    const bool is_end =
-        patch.kind == SurfacePatch::Kind::wall || patch.kind == SurfacePatch::Kind::period_end;
-    return !is_end && std::ranges::find(patch.regions, SurfacePatch::nothing) != patch.regions.end();
+    if (patch.kind == SurfacePatch::Kind::wall) return volume.at(wall_of(t)) < 0;
+    return patch.kind != SurfacePatch::Kind::period_end &&
+           std::ranges::find(patch.regions, SurfacePatch::nothing) != patch.regions.end();
   };
   DisjointSets parts(surface.vertices.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)

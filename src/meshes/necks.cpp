@@ -21,9 +21,10 @@ struct WallView {
   std::uint32_t wall;
   Vector<3> outward;
   double distance;
+  double room = std::numeric_limits<double>::infinity();  ///< for the radius of a bridge
 };
 
-std::vector<WallView> walls_around(const Domain& domain, const Vector<3>& p) {
+std::vector<WallView> walls_seen_from(const Domain& domain, const Vector<3>& p) {
   std::vector<WallView> views;
   if (const auto* box = std::get_if<Box>(&domain)) {
     for (int k = 0; k < 3; ++k) {
@@ -67,6 +68,8 @@ class Necks {
     between_spheres();
     at_walls();
     limit_.assign(bonds_, std::numeric_limits<double>::infinity());
+    for (const DraftNeck& neck : draft_.necks)
+      if (neck.most_radius < neck.asked) narrow(neck, neck.most_radius);
     keep_apart_on_spheres();
     keep_from_others();
     for (std::uint32_t n = 0; n < draft_.necks.size(); ++n) finish(n);
@@ -117,12 +120,28 @@ class Necks {
     }
   }
 
+  /// Of flat walls those that are nearer than the gap.
+  std::vector<WallView> walls_around(const Piece& piece) const {
+    const auto* mesh = std::get_if<Mesh>(&solids_.domain);
+    if (mesh == nullptr) return walls_seen_from(solids_.domain, piece.center);
+    std::vector<WallView> views;
+    const double r = piece.radius, reach = (1 + solids_.contacts.gap) * r;
+    for (const FlatFeet::Foot& foot : feet_->near(piece.center, r, reach)) {
+      const FlatPart& part = draft_.flat_walls->parts[foot.part];
+      views.push_back({foot.part, part.outward, (part.origin - piece.center).dot(part.outward),
+                       FlatFeet::radius_in(foot, solids_.bridge_radius * r, draft_.options.neck_edge * r)});
+    }
+    return views;
+  }
+
   void at_walls() {
     if (solids_.contacts.treatment != ContactTreatment::bridge) return;
+    if (const auto* mesh = std::get_if<Mesh>(&solids_.domain))
+      feet_.emplace(*mesh, *draft_.flat_walls, draft_.sizes.container());
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> bonds;
     for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p) {
       const Piece& piece = draft_.pieces[p].piece;
-      for (const WallView& view : walls_around(solids_.domain, piece.center)) {
+      for (const WallView& view : walls_around(piece)) {
         if (view.distance - piece.radius >= solids_.contacts.gap * piece.radius) continue;
         DraftNeck neck;
         neck.pieces = {p, p};
@@ -130,6 +149,7 @@ class Necks {
         neck.axis = view.outward;
         neck.asked = solids_.bridge_radius * piece.radius;
         neck.distance = view.distance;
+        neck.most_radius = view.room;
         const auto [entry, is_new] = bonds.try_emplace({piece.sphere, view.wall}, bonds_);
         bonds_ += is_new;
         neck.bond = entry->second;
@@ -298,6 +318,7 @@ class Necks {
   const Solids& solids_;
   Spheres<3> spheres_;
   PointGrid<3> grid_;
+  std::optional<FlatFeet> feet_;  ///< in a mesh
   std::uint32_t bonds_ = 0;
   std::vector<double> limit_;  ///< of the radius, by bond
 };

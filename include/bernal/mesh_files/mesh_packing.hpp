@@ -65,6 +65,8 @@ struct BedMeshReport {
   double least_triangle_angle = 0;  ///< in degrees
   Vector<3> place_of_least_angle = Vector<3>::Zero();
   std::size_t shrunk_necks = 0;  ///< whose radius is smaller than asked for
+  /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
+  std::size_t gaps_at_edges = 0;
 
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
