@@ -15,8 +15,8 @@
 #include "bernal/core/error.hpp"
 #include "domain/revolved_surface.hpp"
 #include "geometry/changes.hpp"
-#include "meshes/fill.hpp"
 #include "meshes/flat_walls.hpp"
+#include "meshes/tetgen.hpp"
 #include "meshes/volume_mesh.hpp"
 
 namespace bernal {
