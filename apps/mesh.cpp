@@ -32,6 +32,7 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
   fmt::print("spheres      {}; {} necks", grouped(report.spheres), grouped(report.necks));
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for", grouped(report.shrunk_necks));
+  if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
   if (report.gaps_at_edges > 0)
     fmt::print("; {} with a gap instead, at walls where no bridge fits into a flat part",
                grouped(report.gaps_at_edges));

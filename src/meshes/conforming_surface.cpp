@@ -60,10 +60,10 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
                             "not in a {}",
                             name_of(solids.domain)));
   SurfaceDraft draft(solids, options);
-  for (const Piece& piece : solids.pieces) draft.pieces.push_back({piece, {}});
   if (mesh != nullptr) draft.flat_walls = flat_walls_of(*mesh);
   add_necks(draft);
   add_circles(draft);
+  add_neck_traces(draft);
   mesh_necks(draft);
   mesh_pieces(draft, monitor);
   mesh_flat_faces(draft);
