@@ -43,6 +43,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.least_triangle_angle = stated.least_angle;
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
+  report.widened_necks = stated.widened_necks;
   report.porosity = stated.fluid_volume / report.domain_volume;
   report.contact_area = stated.contact_area;
 }

@@ -59,7 +59,7 @@ void state(SurfaceDraft& draft) {
   statement.fluid_volume = volume_of(draft.solids.domain) -
                            (is_capped ? contacts.volume_after : volume_of_balls(draft.solids.spheres));
   if (is_capped) statement.contact_area = contacts.contact_area;
-  std::vector<char> counted(draft.necks.size(), 0);
+  std::vector<char> counted(made.necks.size(), 0);
   for (const DraftNeck& neck : draft.necks)
     if (!std::exchange(counted[neck.bond], 1)) statement.fluid_volume -= neck.volume;
 }
