@@ -66,6 +66,8 @@ struct BedMeshReport {
   Vector<3> place_of_least_angle = Vector<3>::Zero();
   std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
+  /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
+  std::size_t gaps_at_edges = 0;
 
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
