@@ -8,6 +8,7 @@
 #include "mesh_files/mesh_file.hpp"
 #include "meshes/conforming_surface.hpp"
 #include "meshes/fill.hpp"
+#include "meshes/flat_walls.hpp"
 #include "meshes/mesh_quality.hpp"
 #include "meshes/second_order.hpp"
 #include "result/free_places.hpp"
@@ -82,9 +83,12 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.domain_volume = volume_of(packing.domain);
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
-  const Solids solids = solids_of(
+  const SolidsInWalls made = solids_in_walls(
       packing.spheres, packing.domain,
-      {.contact = options.contact, .gap = options.gap, .bridge_radius = options.bridge_radius}, monitor);
+      {.contact = options.contact, .gap = options.gap, .bridge_radius = options.bridge_radius},
+      options.neck_edge, monitor);
+  const Solids& solids = made.solids;
+  report.gaps_at_edges = made.gaps_at_edges;
   const ConformingSurface surface = conforming_surface(solids,
                                                        {.sphere_edge = options.sphere_edge,
                                                         .neck_edge = options.neck_edge,
@@ -95,7 +99,8 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
   VolumeMesh mesh = fill(surface, {}, filled, monitor);
-  report.parts.push_back({"fill", filled.seconds, filled.peak_bytes});
+  report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
+                          filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
   if (options.order == 2) {
     const Stopwatch curving;

@@ -1,8 +1,10 @@
 #pragma once
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <vector>
 
+#include "bernal/domain/container.hpp"
 #include "meshes/conforming_surface.hpp"
 #include "near/point_grid.hpp"
 
@@ -46,6 +48,8 @@ class MeshSizes {
   }
 
   double largest_radius() const { return largest_; }
+  /// The walls of a mesh, in its own frame; null for other domains.
+  const std::shared_ptr<const Container>& container() const { return container_; }
 
  private:
   /// No edges are shorter for the sake of a contact with this gap between surfaces; 0 if it is not treated.
@@ -59,6 +63,8 @@ class MeshSizes {
   PointGrid<3> grid_;
   double largest_;
   bool has_necks_;
+  std::shared_ptr<const Container> container_;
+  Frame frame_;
 };
 
 }  // namespace bernal

@@ -1,12 +1,14 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "meshes/conforming_surface.hpp"
+#include "meshes/flat_walls.hpp"
 #include "meshes/mesh_sizes.hpp"
 #include "meshes/patch_mesh.hpp"
 
@@ -87,6 +89,7 @@ struct SurfaceDraft {
   const SurfaceMeshOptions& options;
   Boundary<3> boundary;
   MeshSizes sizes;
+  std::optional<FlatWalls> flat_walls = {};  ///< of a mesh
   std::vector<DraftPiece> pieces = {};
   std::vector<DraftNeck> necks = {};
   ConformingSurface made = {};
@@ -169,6 +172,7 @@ void mesh_flat_faces(SurfaceDraft&);
 void mesh_box(SurfaceDraft&, const Box&);
 void mesh_cylinder(SurfaceDraft&, const Cylinder&);
 void mesh_ball(SurfaceDraft&, const Sphere&);
+void mesh_flat_walls(SurfaceDraft&, const Mesh&);
 /// A point inside a piece and not near its cuts.
 Vector<3> inner_point(const Piece&);
 /// Regions with points inside.

@@ -75,7 +75,14 @@ void add_wall_caps(const Spheres<dynamic>& spheres, const Domain& domain, double
     const Vector<3> c = spheres.center(i);
     points.clear();
     container->walls_near(frame.to_local(c), (1 + gap) * r / frame.scale, points);
+    // What is beside a nearer point of the same flat wall, or behind that wall, its cap cuts off, too.
+    std::vector<const WallPoint*> taken;
     for (const WallPoint& point : points) {
+      if (std::ranges::any_of(taken, [&](const WallPoint* nearer) {
+            return (nearer->point - point.point).dot(nearer->inward) >= -8 * tolerance::roundoff;
+          }))
+        continue;
+      taken.push_back(&point);
       const Vector<3> outward = -point.inward, across = outward.unitOrthogonal();
       double depth = point.clearance * frame.scale - left - roundings_at(spheres, i);
       constexpr int rounds = 20, rim_points = 48;

@@ -1,6 +1,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "bernal/mesh_files/mesh_packing.hpp"
 #include "check.hpp"
 
@@ -63,6 +65,35 @@ TEST(MeshCommand, ElementsOfSecondOrderHoldTheStatedPorosity) {
   const auto report = nlohmann::json::parse(ended.out);
   EXPECT_GT(report["least_curved_sicn"], 0);
   EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 1e-4);
+}
+
+TEST(MeshCommand, CadPartsKeepTheirVolumeInTheMesh) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  Folder folder;
+  const std::string scene = fmt::format(R"(unit = "m"
+[container]
+kind = "mesh"
+file = "{}/meshes/hopper.stl"
+unit = "m"
+[spheres]
+count = 8
+diameter = 0.24
+)",
+                                        BERNAL_DATA);
+  const std::string out = folder / "out";
+  const Ended packed = bernal({"pack", folder.write("scene.toml", scene).string(), "-o", out});
+  ASSERT_EQ(packed.status, 0) << packed.err;
+  for (const char* contact : {"bridge", "gap"}) {
+    const Ended ended = bernal({"mesh", out, "--to", "gmsh", "-o", folder / "bed.msh", "--regions", "all",
+                                "--contact", contact, "--json"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    const auto report = nlohmann::json::parse(ended.out);
+    EXPECT_GE(report["least_sicn"], 0.1);
+    double volume = 0;
+    for (const auto& group : report["groups"]) volume += group["volume"].get<double>();
+    EXPECT_NEAR(volume, 0.8125, 1e-7);  // corners of the file are in single precision
+    EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 0.01);
+  }
 }
 
 TEST(MeshCommand, RefusesWhatItCannotWrite) {
