@@ -41,7 +41,7 @@ class Necks {
   void make() {
     between_spheres();
     at_walls();
-    for (NeckBond& bond : bonds_) bond.radius = clear_of_ends(bond, bond.asked, wider);
+    for (NeckBond& bond : bonds_) bond.radius = clear_of_ends(bond, bond.asked, true);
     limit_.assign(bonds_.size(), std::numeric_limits<double>::infinity());
     for (std::uint32_t b = 0; b < bonds_.size(); ++b)
       if (bonds_[b].room < bonds_[b].radius) narrow(b, bonds_[b].room);
@@ -52,10 +52,9 @@ class Necks {
 
  private:
   /// Shares of a radius that are tried, the nearest first.
-  static constexpr std::array<double, 18> wider = {1,    0.95, 1.05, 0.9, 1.1,  0.85, 1.15, 0.8, 1.2,
-                                                   0.75, 1.25, 0.7,  1.3, 0.65, 0.6,  0.55, 0.5, 0.45};
-  static constexpr std::array<double, 12> narrower = {1,   0.95, 0.9, 0.85, 0.8, 0.75,
-                                                      0.7, 0.65, 0.6, 0.55, 0.5, 0.45};
+  static constexpr std::array<double, 21> shares = {1,   0.95, 1.05, 0.9,  1.1, 0.85, 1.15,
+                                                    0.8, 1.2,  0.75, 1.25, 0.7, 1.3,  0.65,
+                                                    0.6, 0.55, 0.5,  0.45, 0.4, 0.35, 0.3};
 
   double edge_of(const NeckBond& bond) const { return draft_.options.neck_edge * least_radius(bond); }
   double least_radius(const NeckBond& bond) const {
@@ -132,12 +131,14 @@ class Necks {
     }
   }
 
-  /// Of some shares of a radius the first that ends of periods cut or miss clearly, or the best.
-  double clear_of_ends(const NeckBond& bond, double radius, std::span<const double> shares) const {
+  /// Of some shares of a radius the first that ends of periods cut or miss clearly, or the best. Bridges on
+  /// walls are not cut.
+  double clear_of_ends(const NeckBond& bond, double radius, bool may_widen) const {
     if (!draft_.boundary.repeats()) return radius;
     double best = radius, most = -1;
     for (const double share : shares) {
       const double a = share * radius;
+      if ((share > 1 && (!may_widen || bond.wall)) || (bond.wall && is_crossed(bond, a))) continue;
       double clearance = clearance_of_ends(draft_.boundary, center(bond, 0), spheres_.r[bond.spheres[0]],
                                            bond.axis, a, edge_of(bond));
       if (!bond.wall)
@@ -151,6 +152,15 @@ class Necks {
       }
     }
     return best;
+  }
+
+  bool is_crossed(const NeckBond& bond, double radius) const {
+    for (int k = 0; k < 3; ++k) {
+      if (!draft_.boundary.repeats(k)) continue;
+      const double from = (center(bond, 0)[k] - draft_.boundary.origin[k]) / draft_.boundary.edges[k];
+      if (std::abs(from - std::nearbyint(from)) * draft_.boundary.edges[k] <= radius) return true;
+    }
+    return false;
   }
 
   /// Circles on one sphere stay half an edge apart.
@@ -207,7 +217,7 @@ class Necks {
 
   void finish(std::uint32_t b) {
     NeckBond& bond = bonds_[b];
-    if (limit_[b] < bond.radius) bond.radius = clear_of_ends(bond, limit_[b], narrower);
+    if (limit_[b] < bond.radius) bond.radius = clear_of_ends(bond, limit_[b], false);
     DraftNeck neck;
     neck.bond = b;
     neck.spheres = bond.spheres;
@@ -225,11 +235,12 @@ class Necks {
       neck.end -= depth;
       neck.volume -= cap_volume(other, other - depth);
     } else {
-      neck.volume -= beyond_tangent(neck);
+      neck.volume -= volume_before_wall(solids_.domain, *bond.wall, a);
     }
     const double height = neck.end - neck.begin;
     neck.volume += pi * a * a * height;
-    neck.count = draft_.sizes.neck_count(a, least_radius(bond), height - least_height_less(neck));
+    neck.count = draft_.sizes.neck_count(
+        a, least_radius(bond), height - (bond.wall ? rise_of_wall(solids_.domain, *bond.wall, a) : 0));
     neck.edge = 2 * pi * a / static_cast<double>(neck.count);
     neck.rows = static_cast<std::size_t>(std::max(1.0, std::nearbyint(height / (0.87 * neck.edge))));
     place_images(neck, bond);
@@ -323,31 +334,6 @@ class Necks {
                 : foot_of(draft_, neck, beside);
         neck.rims[e].push_back(draft_.add_vertex(p, neck.edge));
       }
-  }
-
-  /// By how much a neck to a round wall is lower at most beside its middle.
-  double least_height_less(const DraftNeck& neck) const {
-    if (!neck.wall) return 0;
-    const double a = neck.radius, radius = radius_of_wall(solids_.domain, *neck.wall);
-    return radius > 0 ? a * a / (radius + std::sqrt(radius * radius - a * a)) : 0;
-  }
-
-  /// What a neck to a round wall lacks between its tangent plane and the wall. Of a cylinder the integral
-  /// over the neck's section of R - sqrt(R² - x²), by Gauss and Chebyshev's rule.
-  double beyond_tangent(const DraftNeck& neck) const {
-    const double a = neck.radius, radius = radius_of_wall(solids_.domain, *neck.wall);
-    if (!(radius > 0)) return 0;
-    if (std::holds_alternative<Sphere>(solids_.domain)) {
-      const double lower = least_height_less(neck);
-      return pi * a * a * lower - cap_volume(radius, lower);
-    }
-    constexpr int nodes = 48;
-    double sum = 0;
-    for (int k = 1; k <= nodes; ++k) {
-      const double t = pi * k / (nodes + 1), x = a * std::cos(t), s = std::sin(t);
-      sum += s * s * (x * x / (radius + std::sqrt(radius * radius - x * x)));
-    }
-    return 2 * a * a * pi / (nodes + 1) * sum;
   }
 
   void put_on_pieces(std::uint32_t n, DraftNeck& neck) {

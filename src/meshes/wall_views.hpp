@@ -19,4 +19,11 @@ std::vector<WallView> walls_around(const Domain&, const Vector<3>& p);
 /// The radius of a round wall; 0 for flat ones.
 double radius_of_wall(const Domain&, std::uint32_t wall);
 
+/// By how much a wall rises at most above its tangent plane within a circle of this radius about the axis of
+/// a neck: 0 for flat ones.
+double rise_of_wall(const Domain&, std::uint32_t wall, double radius);
+/// The volume between the tangent plane and the wall in that circle. Of a cylinder of radius R the integral
+/// of R - sqrt(R² - x²), by Gauss and Chebyshev's rule.
+double volume_before_wall(const Domain&, std::uint32_t wall, double radius);
+
 }  // namespace bernal

@@ -39,9 +39,25 @@ std::vector<Extent> extents_along(int axis, const Spheres<dynamic>& spheres,
   return extents;
 }
 
-/// The middles of the widest gaps between extents along an axis, the widest first.
-std::vector<Place> places_along(int axis, const std::vector<Extent>& extents, const Boundary<3>& boundary,
-                                std::size_t most) {
+/// Leaves those places that are in no foot, or as little as there are.
+void leave_out_feet(std::vector<Place>& places, const std::vector<Extent>& feet, double period) {
+  for (const double share : {1.4, 1.0, 0.7, 0.5}) {
+    std::vector<Place> left;
+    for (const Place& place : places)
+      if (std::ranges::none_of(feet, [&](const Extent& foot) {
+            return std::abs(apart(foot.middle, place.at, period)) < share * foot.reach;
+          }))
+        left.push_back(place);
+    if (left.empty()) continue;
+    places = left;
+    return;
+  }
+}
+
+/// The middles of the widest gaps between extents along an axis, the widest first; in no foot if there are
+/// such.
+std::vector<Place> places_along(int axis, const std::vector<Extent>& extents, const std::vector<Extent>& feet,
+                                const Boundary<3>& boundary, std::size_t most) {
   const double lower = boundary.origin[axis], period = boundary.edges[axis];
   std::vector<double> ends;
   for (const Extent& extent : extents)
@@ -54,6 +70,7 @@ std::vector<Place> places_along(int axis, const std::vector<Extent>& extents, co
     gaps.push_back({lower + 0.5 * (ends[k] + next), next - ends[k]});
   }
   if (gaps.empty()) return {{lower, unlimited}};
+  if (!feet.empty()) leave_out_feet(gaps, feet, period);
   std::ranges::stable_sort(gaps, std::greater{}, &Place::distance);
   gaps.resize(std::min(gaps.size(), most));
   for (Place& place : gaps) {
@@ -121,17 +138,21 @@ Ends best_of(const std::array<std::vector<Place>, 3>& places, const Spheres<dyna
 }  // namespace
 
 ClearEnds with_clear_ends(const Spheres<dynamic>& spheres, const Domain& domain,
-                          const std::vector<Bridge>& bridges) {
+                          const std::vector<Bridge>& bridges, const std::vector<WallFoot>& feet) {
   const Boundary<3> boundary = boundary_of<3>(domain);
   if (!boundary.repeats() || spheres.empty()) return {domain, unlimited};
   // Limits the places so that the work for edges is some million distances.
   const auto n = static_cast<double>(spheres.size());
   const auto most = static_cast<std::size_t>(std::clamp(std::sqrt(1e7 / n), 4.0, 40.0));
   std::array<std::vector<Place>, 3> places;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3; ++k) {
+    std::vector<Extent> standing;
+    for (const WallFoot& foot : feet)
+      standing.push_back({spheres.x[static_cast<std::size_t>(k)][foot.sphere], foot.radius, foot.radius});
     places[static_cast<std::size_t>(k)] =
-        boundary.repeats(k) ? places_along(k, extents_along(k, spheres, bridges), boundary, most)
+        boundary.repeats(k) ? places_along(k, extents_along(k, spheres, bridges), standing, boundary, most)
                             : std::vector<Place>{{boundary.origin[k], unlimited}};
+  }
   const Ends best = best_of(places, spheres, boundary);
   Domain moved = domain;
   if (auto* box = std::get_if<Box>(&moved)) {

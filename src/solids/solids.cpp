@@ -276,12 +276,16 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   if (shrinks)
     made.contacts = shrink_contacts(made.spheres, domain, options.contact, options.gap, false, monitor);
   std::vector<Bridge> bridges;
+  std::vector<WallFoot> feet;
   if (options.contact == ContactTreatment::bridge) {
     ContactReport unused;
     const std::vector<Bond> bonds = bonds_of(made.spheres, domain, options.gap);
     bridges = bridges_of(made.spheres, domain, bonds, options.bridge_radius, unused);
+    if (has_walls(domain) && boundary_of<3>(domain).repeats())
+      for (const NearWall& wall : near_walls(made.spheres, domain, options.gap, nullptr))
+        feet.push_back({wall.sphere, options.bridge_radius * made.spheres.r[wall.sphere]});
   }
-  const ClearEnds ends = with_clear_ends(made.spheres, domain, bridges);
+  const ClearEnds ends = with_clear_ends(made.spheres, domain, bridges, feet);
   made.end_distance = ends.distance;
   made.domain = ends.domain;
   wrap(made.spheres, made.domain);

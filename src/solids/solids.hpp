@@ -50,15 +50,23 @@ struct SolidsOptions {
 /// Cost: O(N).
 Solids solids_of(const Spheres<dynamic>&, const Domain&, const SolidsOptions&, const Monitor& monitor = {});
 
+/// Where a bridge stands on a wall beside a sphere.
+struct WallFoot {
+  std::uint32_t sphere;
+  double radius;
+};
+
 /// The domain with the ends of its periods where no sphere nearly touches them: no face, edge or corner of
 /// the box a sphere (relative to the radius), no face a bridge. On each axis the candidates are the middles
-/// of the widest gaps between extents; the best combination is taken. The spheres do not move; `wrap` moves
-/// their centres into the period. Deterministic. Cost: O(N log N) and some million distances.
+/// of the widest gaps between extents, past feet of bridges if there is such a place; the best combination is
+/// taken. The spheres do not move; `wrap` moves their centres into the period. Deterministic. Cost: O(N log
+/// N) and some million distances.
 struct ClearEnds {
   Domain domain;
   double distance;  ///< least, over the radius; infinite without periods
 };
-ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&, const std::vector<Bridge>& bridges = {});
+ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&, const std::vector<Bridge>& bridges = {},
+                          const std::vector<WallFoot>& feet = {});
 
 /// Volume of a spherical cap, π h² (3 r - h) / 3.
 double cap_volume(double radius, double height);

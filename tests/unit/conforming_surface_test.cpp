@@ -362,6 +362,24 @@ TEST(ConformingSurface, CylindersHaveRoundSides) {
   }
 }
 
+TEST(ConformingSurface, EndsOfPeriodsGoPastBridgesOnWalls) {
+  const Cylinder cylinder{.radius = 2, .height = 4, .periodic = true};
+  Spheres<dynamic> spheres(3);  // a spiral at the side, whose first ball is at the end of the period
+  for (int k = 0; k < 8; ++k) {
+    const double angle = 2 * pi * k / 8;
+    spheres.push_back(Vector<3>(1.5 * std::cos(angle), 1.5 * std::sin(angle), 0.45 * k), 0.5);
+  }
+  const Solids solids = solids_in(spheres, cylinder, ContactTreatment::bridge);
+  const Boundary<3> boundary = boundary_of<3>(solids.domain);
+  for (const double z : solids.spheres.x[2]) {
+    const double from = (z - boundary.origin[2]) / 4;
+    EXPECT_GT(4 * std::abs(from - std::nearbyint(from)), 0.1);
+  }
+  const ConformingSurface surface = conforming_surface(solids, {.solids = true});
+  expect_sound(surface, 0.03);
+  EXPECT_EQ(std::ranges::count_if(surface.necks, [](const MeshedNeck& neck) { return !neck.other; }), 8);
+}
+
 TEST(ConformingSurface, BallsInABall) {
   const Sphere container{.radius = 2};
   Spheres<dynamic> spheres(3);
