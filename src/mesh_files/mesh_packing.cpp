@@ -45,6 +45,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
   report.widened_necks = stated.widened_necks;
+  report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
   report.contact_area = stated.contact_area;
 }
@@ -101,7 +102,8 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
   VolumeMesh mesh = fill(surface, {}, filled, monitor);
-  report.parts.push_back({"fill", filled.seconds, filled.peak_bytes});
+  report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
+                          filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
   if (options.order == 2) {
     const Stopwatch curving;

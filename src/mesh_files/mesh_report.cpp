@@ -14,6 +14,7 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"gaps_at_edges", report.gaps_at_edges},
             {"wall_deviation", report.wall_deviation},
             {"widened_necks", report.widened_necks},
+            {"deepened_caps", report.deepened_caps},
             {"triangles", report.triangles},
             {"least_edge", report.least_edge},
             {"least_triangle_angle", report.least_triangle_angle},
