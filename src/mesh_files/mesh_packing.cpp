@@ -45,6 +45,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
   report.widened_necks = stated.widened_necks;
+  report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
   report.contact_area = stated.contact_area;
 }
@@ -88,6 +89,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
       options.neck_edge, monitor);
   const Solids& solids = made.solids;
   report.gaps_at_edges = made.gaps_at_edges;
+  report.wall_deviation = made.wall_deviation;
   const ConformingSurface surface = conforming_surface(solids,
                                                        {.sphere_edge = options.sphere_edge,
                                                         .neck_edge = options.neck_edge,
@@ -95,6 +97,8 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
                                                         .solids = options.solids},
                                                        monitor);
   take_surface(surface, report);
+  // The surface states what is between its own walls.
+  report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
   VolumeMesh mesh = fill(surface, {}, filled, monitor);

@@ -66,8 +66,10 @@ struct BedMeshReport {
   Vector<3> place_of_least_angle = Vector<3>::Zero();
   std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
+  std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
   std::size_t gaps_at_edges = 0;
+  double wall_deviation = 0;  ///< how far facets stand off the round walls of a solid of revolution
 
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
