@@ -4,10 +4,11 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "bernal/version.hpp"
 #include "mesh_files/mesh_file.hpp"
 #include "meshes/conforming_surface.hpp"
-#include "meshes/fill.hpp"
+#include "meshes/fill_layers.hpp"
 #include "meshes/mesh_quality.hpp"
 #include "meshes/second_order.hpp"
 #include "result/free_places.hpp"
@@ -61,11 +62,34 @@ void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, BedMeshReport& 
   const std::vector<double> volumes =
       mesh.is_curved() ? curved_volumes_of_regions(mesh) : volumes_of_regions(mesh);
   report.meshed_porosity = volumes.front() / report.domain_volume;
-  for (const std::string& name : groups.volumes) report.groups.push_back({.name = name});
+  for (const std::string& name : groups.volumes) report.groups.push_back({.name = name, .stated_volume = 0});
   for (std::size_t r = 0; r < volumes.size(); ++r)
     report.groups[groups.volume_of_region[r]].volume += volumes[r];
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    std::optional<double>& stated = report.groups[groups.volume_of_region[r]].stated_volume;
+    if (stated && mesh.regions[r].volume) {
+      *stated += *mesh.regions[r].volume;
+    } else {
+      stated.reset();
+    }
+  }
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
     ++report.groups[groups.volume_of(mesh, t)].tetrahedra;
+}
+
+/// Where layers of spheres begin; nothing where only the fluid is meshed.
+Shells shells_of(const Packing& packing, const MeshFileOptions& options) {
+  Shells shells;
+  if (!options.solids) return shells;
+  const SphereLayers layers = layers_of(packing);
+  if (layers.empty()) return shells;
+  shells.first.push_back(0);
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+    const std::span<const double> outer = layers.of(i);
+    for (std::size_t k = 0; k + 1 < outer.size(); ++k) shells.radius.push_back(outer[k]);
+    shells.first.push_back(shells.radius.size());
+  }
+  return shells;
 }
 
 /// The mesh, with what it is like so far.
@@ -73,9 +97,12 @@ VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const
                    BedMeshReport& report) {
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
-  const Solids solids = solids_of(
-      packing.spheres, packing.domain,
-      {.contact = options.contact, .gap = options.gap, .bridge_radius = options.bridge_radius}, monitor);
+  const Solids solids = solids_of(packing.spheres, packing.domain,
+                                  {.contact = options.contact,
+                                   .gap = options.gap,
+                                   .bridge_radius = options.bridge_radius,
+                                   .shells = shells_of(packing, options)},
+                                  monitor);
   const ConformingSurface surface = conforming_surface(solids,
                                                        {.sphere_edge = options.sphere_edge,
                                                         .neck_edge = options.neck_edge,
@@ -85,12 +112,14 @@ VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const
   take_surface(surface, report);
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
-  VolumeMesh mesh = fill(surface, {}, filled, monitor);
+  VolumeMesh mesh = fill_with_layers(surface, {}, filled, monitor);
   report.parts.push_back({"fill", filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
   if (options.order == 2) {
     const Stopwatch curving;
-    make_second_order(mesh, solids.spheres, solids.domain);
+    const CurvedEdges edges = make_second_order(mesh);
+    report.curved_edges = edges.curved;
+    report.straight_edges = edges.kept_straight;
     report.parts.push_back({"second order", curving.seconds()});
   }
   return mesh;

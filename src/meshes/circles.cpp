@@ -31,7 +31,7 @@ class Circles {
  public:
   explicit Circles(SurfaceDraft& draft) : draft_(draft) {
     for (std::uint32_t p = 0; p < draft.pieces.size(); ++p)
-      numbers_[{draft.pieces[p].piece.sphere, draft.pieces[p].piece.image}] = p;
+      numbers_[{draft.pieces[p].piece.sphere, draft.pieces[p].piece.image, draft.pieces[p].layer}] = p;
     near_.resize(draft.pieces.size());
     has_near_.resize(draft.pieces.size(), 0);
   }
@@ -54,7 +54,7 @@ class Circles {
     for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
       for (std::size_t a = 0; a < draft_.pieces[p].circles.size(); ++a)
         for (std::size_t b = 0; b < a; ++b)
-          if (const std::vector<std::uint32_t> ids = chord(p, b, a); !ids.empty())
+          for (const std::vector<std::uint32_t>& ids : chords_of(p, b, a))
             draft_.pieces[p].chords.push_back({{b, a}, ids});
   }
 
@@ -64,7 +64,7 @@ class Circles {
   std::uint32_t piece_before(std::uint32_t p, int axis) const {
     auto image = draft_.pieces[p].piece.image;
     --image[static_cast<std::size_t>(axis)];
-    const auto found = numbers_.find({draft_.pieces[p].piece.sphere, image});
+    const auto found = numbers_.find({draft_.pieces[p].piece.sphere, image, draft_.pieces[p].layer});
     return found == numbers_.end() ? Delaunay::none : found->second;
   }
 
@@ -86,7 +86,8 @@ class Circles {
 
   const std::vector<NearBall>& near_of(std::uint32_t p) {
     if (!has_near_[p]) {
-      near_[p] = draft_.sizes.near(draft_.pieces[p].piece.center, draft_.pieces[p].piece.sphere);
+      if (draft_.pieces[p].is_outer())
+        near_[p] = draft_.sizes.near(draft_.pieces[p].piece.center, draft_.pieces[p].piece.sphere);
       has_near_[p] = 1;
     }
     return near_[p];
@@ -198,9 +199,11 @@ class Circles {
     return draft_.options.sphere_edge * draft_.pieces[p].piece.radius;
   }
 
-  /// Vertices along the part of a line of two planes that is inside a piece; none if there is no such part,
-  /// or no flat face needs it.
-  std::vector<std::uint32_t> chord(std::uint32_t p, std::size_t a, std::size_t b) {
+  using Chains = std::vector<std::vector<std::uint32_t>>;
+
+  /// Vertices along the parts of a line of two planes that are inside a piece and outside of the piece within
+  /// it; none if there are no such parts, or no flat face needs them.
+  Chains chords_of(std::uint32_t p, std::size_t a, std::size_t b) {
     const std::array<std::size_t, 2> both = {a, b};
     const auto& circles = draft_.pieces[p].circles;
     const Circle &one = circles[a], &other = circles[b];
@@ -211,12 +214,12 @@ class Circles {
     if (const int face = upper_among(p, both); face >= 0) {
       const std::uint32_t lower = piece_before(p, face / 2);
       if (lower == Delaunay::none) return {};
-      std::vector<std::uint32_t> ids =
-          chord(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face));
-      for (std::uint32_t& id : ids) id = draft_.lifted(face / 2, id);
-      return ids;
+      Chains made = chords_of(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face));
+      for (auto& ids : made)
+        for (std::uint32_t& id : ids) id = draft_.lifted(face / 2, id);
+      return made;
     }
-    if (a > b) return chord(p, b, a);
+    if (a > b) return chords_of(p, b, a);
     if (const auto found = chords_.find({p, a, b}); found != chords_.end()) return found->second;
     const Piece& piece = draft_.pieces[p].piece;
     const Vector<3> foot =
@@ -244,13 +247,40 @@ class Circles {
     const auto end = [&](std::size_t e) {
       return by[e] == a ? corner(p, a, b, at(ends[e])) : triple(p, {a, b, by[e]});
     };
-    std::vector<std::uint32_t>& ids = chords_[{p, a, b}];
-    ids.push_back(end(0));
-    const double length = ends[1] - ends[0];
-    for (const double share : spaced(length, 1, [&](double) { return chord_size(p); }))
-      ids.push_back(add(p, both, at(ends[0] + share * length), chord_size(p)));
-    ids.push_back(end(1));
-    return ids;
+    struct End {
+      double t;
+      std::uint32_t id;
+    };
+    std::vector<std::array<End, 2>> parts;
+    const std::uint32_t within = draft_.pieces[p].within;
+    const double half = within == DraftPiece::none ? 0 : half_chord(within, foot.squaredNorm());
+    if (half > 0 && ends[0] < half && ends[1] > -half) {
+      const auto same = [&](std::size_t of) { return circle_at(within, circles[of].face); };
+      const auto inner = [&](double t) { return End{t, corner(within, same(a), same(b), at(t))}; };
+      if (ends[0] < -half) parts.push_back({End{ends[0], end(0)}, inner(-half)});
+      if (ends[1] > half) parts.push_back({inner(half), End{ends[1], end(1)}});
+    } else {
+      parts.push_back({End{ends[0], end(0)}, End{ends[1], end(1)}});
+    }
+    const double size =
+        within == DraftPiece::none ? chord_size(p) : std::min(chord_size(p), draft_.pieces[p].largest_edge);
+    const bool has_prisms = within != DraftPiece::none && draft_.pieces[within].is_copied;
+    Chains made;
+    for (const auto& [from, to] : parts) {
+      std::vector<std::uint32_t>& ids = made.emplace_back(1, from.id);
+      const double length = to.t - from.t;
+      if (!has_prisms)
+        for (const double share : spaced(length, 1, [&](double) { return size; }))
+          ids.push_back(add(p, both, at(from.t + share * length), size));
+      ids.push_back(to.id);
+    }
+    return chords_[{p, a, b}] = made;
+  }
+
+  /// Half the length of a line in a ball, from the square of its distance from the centre; 0 outside.
+  double half_chord(std::uint32_t p, double squared) const {
+    const double r = draft_.pieces[p].piece.radius;
+    return std::sqrt(std::max(0.0, r * r - squared));
   }
 
   std::size_t contact_like(std::uint32_t p, const Circle& wanted) const {
@@ -262,7 +292,7 @@ class Circles {
 
   double size_at(std::uint32_t p, const Vector<3>& q) {
     const DraftPiece& piece = draft_.pieces[p];
-    return draft_.sizes.on_sphere(q, piece.piece.center, piece.piece.radius, true, near_of(p));
+    return draft_.size_on(piece, q, true, near_of(p));
   }
 
   std::vector<Arc> arcs_of(std::uint32_t p, std::size_t c) const {
@@ -314,6 +344,7 @@ class Circles {
       fill(lower, there);
       const Circle& given = draft_.pieces[lower].circles[there];
       circle.is_whole = given.is_whole;
+      circle.chains_around = given.chains_around;
       for (const auto& chain : given.chains) {  // which runs about the opposite normal
         auto& own = circle.chains.emplace_back();
         for (auto id = chain.rbegin(); id != chain.rend(); ++id) own.push_back(draft_.lifted(axis, *id));
@@ -322,6 +353,7 @@ class Circles {
     }
     const Piece& piece = draft_.pieces[p].piece;
     const auto [u, v] = frame_of(circle);
+    if (draft_.pieces[p].is_copied) fill_around(p, c);
     const auto at = [&](double t) {
       Vector<3> q =
           piece.center + circle.depth * circle.normal + circle.radius * (std::cos(t) * u + std::sin(t) * v);
@@ -330,7 +362,8 @@ class Circles {
     };
     for (const Arc& arc : arcs_of(p, c)) {
       circle.is_whole = arc.ended_by[0] == c;
-      const std::vector<double> angles = angles_of(p, circle, arc, at);
+      const std::vector<double> angles =
+          draft_.pieces[p].is_copied ? copied_angles(p, circle, arc) : angles_of(p, circle, arc, at);
       auto& chain = circle.chains.emplace_back();
       if (!circle.is_whole) chain.push_back(corner(p, c, arc.ended_by[0], at(arc.from)));
       for (const double t : angles) {
@@ -341,6 +374,41 @@ class Circles {
       }
       if (!circle.is_whole) chain.push_back(corner(p, c, arc.ended_by[1], at(arc.to)));
     }
+  }
+
+  /// The circle at the same end of the piece around a copied one.
+  void fill_around(std::uint32_t p, std::size_t c) {
+    const std::uint32_t around = draft_.pieces[p].around;
+    fill(around, circle_at(around, draft_.pieces[p].circles[c].face));
+  }
+
+  /// Angles of an arc of a copied piece: those of the arc around it that ends at the same circles, without
+  /// its ends, in the same proportions.
+  std::vector<double> copied_angles(std::uint32_t p, Circle& copied, const Arc& arc) const {
+    const DraftPiece &piece = draft_.pieces[p], &other = draft_.pieces[piece.around];
+    const std::size_t there = circle_at(piece.around, copied.face);
+    const Circle& circle = other.circles[there];
+    const std::vector<Arc> arcs = arcs_of(piece.around, there);
+    const auto face_of = [](const DraftPiece& of, std::size_t k) { return of.circles[k].face; };
+    const auto [u, v] = frame_of(circle);
+    for (std::size_t k = 0; k < arcs.size(); ++k) {
+      if (face_of(other, arcs[k].ended_by[0]) != face_of(piece, arc.ended_by[0]) ||
+          face_of(other, arcs[k].ended_by[1]) != face_of(piece, arc.ended_by[1]))
+        continue;
+      const auto& chain = circle.chains.at(k);
+      copied.chains_around.push_back(k);
+      const double scale = (arc.to - arc.from) / (arcs[k].to - arcs[k].from);
+      std::vector<double> angles;
+      for (std::size_t i = circle.is_whole ? 0 : 1; i + (circle.is_whole ? 0 : 1) < chain.size(); ++i) {
+        const Vector<3> d = draft_.made.vertices[chain[i]] - other.piece.center;
+        double on = std::atan2(d.dot(v), d.dot(u)) - arcs[k].from;
+        on -= 2 * pi * std::floor(on / (2 * pi));
+        if (circle.is_whole && i == 0) on = 0;
+        angles.push_back(arc.from + scale * on);
+      }
+      return angles;
+    }
+    fail();
   }
 
   /// Angles of points along an arc, without its ends, as many as the sizes there ask for.
@@ -357,10 +425,10 @@ class Circles {
   }
 
   SurfaceDraft& draft_;
-  std::map<std::pair<std::uint32_t, std::array<int, 3>>, std::uint32_t> numbers_;
+  std::map<std::tuple<std::uint32_t, std::array<int, 3>, std::uint32_t>, std::uint32_t> numbers_;
   std::map<std::tuple<std::uint32_t, std::size_t, std::size_t, int>, std::uint32_t> corners_;
   std::map<std::array<std::size_t, 4>, std::uint32_t> triples_;
-  std::map<std::tuple<std::uint32_t, std::size_t, std::size_t>, std::vector<std::uint32_t>> chords_;
+  std::map<std::tuple<std::uint32_t, std::size_t, std::size_t>, Chains> chords_;
   std::vector<std::vector<NearBall>> near_;
   std::vector<char> has_near_;
 };

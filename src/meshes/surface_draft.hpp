@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -25,6 +26,7 @@ struct Circle {
   /// Parts outside of the other circles of the piece, counterclockwise about the normal; a whole circle does
   /// not repeat its first point.
   std::vector<std::vector<std::uint32_t>> chains = {};
+  std::vector<std::size_t> chains_around = {};  ///< of a copied piece: which ones of the piece around it
   bool is_whole = false;
 };
 
@@ -34,10 +36,19 @@ struct Chord {
   std::vector<std::uint32_t> ids;
 };
 
+/// A piece of a sphere, or of the sphere within it in which one of its layers begins.
 struct DraftPiece {
+  static constexpr std::uint32_t none = 0xFFFFFFFF;
   Piece piece;
   std::vector<Circle> circles = {};
   std::vector<Chord> chords = {};
+  std::uint32_t layer = 0;                     ///< what is behind it, from the centre out
+  std::uint32_t around = none, within = none;  ///< the next piece outwards and inwards, with its centre
+  /// Its triangles are those of the piece around it, brought inwards, with prisms between.
+  bool is_copied = false;
+  double largest_edge = std::numeric_limits<double>::infinity();  ///< that its layers ask for
+
+  bool is_outer() const { return around == none; }
 };
 
 /// A neck from a piece to another, or to a wall.
@@ -97,8 +108,18 @@ struct SurfaceDraft {
     made.triangles.push_back({a, b, c});
     made.patch.push_back(patch);
   }
+  /// What is between a piece and the one within it.
   std::int32_t region_of_piece(std::uint32_t piece) const {
     return options.solids ? static_cast<std::int32_t>(1 + piece) : SurfacePatch::nothing;
+  }
+  /// The length of edges on a piece at a point, in the scene.
+  double size_on(const DraftPiece& of, const Vector<3>& p, bool is_cut_at_end,
+                 const std::vector<NearBall>& near) const {
+    const double r = of.piece.radius;
+    if (of.is_outer())
+      return std::min(of.largest_edge, sizes.on_sphere(p, of.piece.center, r, is_cut_at_end, near));
+    const double size = std::min(of.largest_edge, options.sphere_edge * r);
+    return is_cut_at_end ? size : std::max(std::min(size, options.per_gap * sizes.from_ends(p)), 1e-4 * r);
   }
   std::int32_t region_of_neck(std::uint32_t neck) const {
     return options.solids ? static_cast<std::int32_t>(1 + pieces.size() + neck) : SurfacePatch::nothing;
@@ -112,16 +133,25 @@ struct SurfaceDraft {
 /// Finds the necks between spheres and to walls, makes them narrower where others would meet them, and puts
 /// their circles on the pieces and points on these.
 void add_necks(SurfaceDraft&);
+/// Adds the spheres within spheres in which their layers begin, after `add_necks`. Throws where a neck or a
+/// cap reaches through a layer.
+void add_shells(SurfaceDraft&);
+/// Triangles of spheres that are copied from those around them, with prisms between, after `mesh_flat_faces`.
+void mesh_copied_shells(SurfaceDraft&);
 /// The points of all other circles; those at opposite ends are the same but for the period.
 void add_circles(SurfaceDraft&);
 /// The point of a neck's wall that stands over a point of its section, given from its axis.
 Vector<3> foot_of(const SurfaceDraft&, const DraftNeck&, const Vector<3>& beside);
 /// Triangles of the sides of necks.
 void mesh_necks(SurfaceDraft&);
+/// The patch of a piece's sphere.
+SurfacePatch patch_of(const SurfaceDraft&, std::uint32_t piece);
 /// Triangles of the spheres.
 void mesh_pieces(SurfaceDraft&, const Monitor&);
 /// Triangles of flat faces of caps and, with solids, of spheres at the ends of periods and of necks' ends.
 void mesh_flat_faces(SurfaceDraft&);
+/// What a wall is, by its number as in SurfacePatch.
+RoundSurface shape_of_wall(const Domain&, std::uint32_t wall);
 /// Triangles of the walls and ends of periods.
 void mesh_box(SurfaceDraft&, const Box&);
 void mesh_cylinder(SurfaceDraft&, const Cylinder&);

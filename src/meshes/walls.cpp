@@ -18,7 +18,8 @@ void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, 
     for (const DraftPiece& piece : draft.pieces)
       for (std::size_t c = 0; c < piece.circles.size(); ++c) {
         const Circle& circle = piece.circles[c];
-        if (circle.kind != Circle::Kind::end || circle.face != static_cast<int>(face)) continue;
+        if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != static_cast<int>(face))
+          continue;
         for (const auto& chain : circle.chains) part.add_chain(chain, circle.is_whole);
         for (const Chord& chord : piece.chords) {  // where caps begin
           if (chord.circles[0] != c && chord.circles[1] != c) continue;
@@ -89,7 +90,9 @@ class BoxWalls {
     if (repeats_[k] && repeats_[l])
       for (const DraftPiece& piece : draft_.pieces)
         for (const Circle& circle : piece.circles) {
-          if (circle.kind != Circle::Kind::end || circle.face != 2 * k || circle.is_whole) continue;
+          if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != 2 * k ||
+              circle.is_whole)
+            continue;
           for (const auto& chain : circle.chains)
             for (const std::uint32_t id : {chain.front(), chain.back()})
               if (const Vector<3>& p = draft_.made.vertices[id]; p[l] == at[l]) {
@@ -156,6 +159,17 @@ class BoxWalls {
 
 }  // namespace
 
+RoundSurface shape_of_wall(const Domain& domain, std::uint32_t wall) {
+  if (const auto* sphere = std::get_if<Sphere>(&domain))
+    return {.kind = RoundSurface::Kind::sphere, .center = sphere->center, .radius = sphere->radius};
+  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  if (cylinder == nullptr || wall != 0) return {};
+  return {.kind = RoundSurface::Kind::cylinder,
+          .center = cylinder->base,
+          .axis = cylinder->axis.normalized(),
+          .radius = cylinder->radius};
+}
+
 void mesh_box(SurfaceDraft& draft, const Box& box) { BoxWalls(draft, box).mesh(); }
 
 void mesh_cylinder(SurfaceDraft& draft, const Cylinder& cylinder) {
@@ -212,7 +226,8 @@ void mesh_cylinder(SurfaceDraft& draft, const Cylinder& cylinder) {
       [&](const Vector<3>& p) { return on_side(p[0] / radius, p[1]); });
   for (const auto& rim : rims) side.add_chain(rim, true);
   add_circles_of(draft, 0, false, true, side);
-  const std::uint32_t side_patch = draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}});
+  const std::uint32_t side_patch =
+      draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}, shape_of_wall(cylinder, 0)});
   const double margin = std::min(6 * draft.options.sphere_edge * draft.sizes.largest_radius(), pi * radius);
   side.mesh(side_patch, false, side_size, 2 * pi * radius, margin);
 
@@ -266,7 +281,8 @@ void mesh_ball(SurfaceDraft& draft, const Sphere& sphere) {
   }
   const PatchMesh mesh = mesh_patch(patch);
   for (const Vector<3>& p : mesh.added) ids.push_back(draft.add_vertex(sphere.center + p, patch.size(p)));
-  const std::uint32_t number = draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}});
+  const std::uint32_t number =
+      draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}, shape_of_wall(sphere, 0)});
   for (const FaceCorners& t : mesh.triangles) draft.add_triangle(number, ids[t[0]], ids[t[1]], ids[t[2]]);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solids/contacts.hpp"
@@ -19,6 +20,17 @@ struct Bridge {
   double reach_along(int axis) const;
 };
 
+/// Spheres within spheres, with the same centres, in which layers begin: radii that ascend, by sphere.
+struct Shells {
+  std::vector<std::size_t> first = {};  ///< one entry a sphere, and one more, or none without any
+  std::vector<double> radius = {};
+
+  std::span<const double> of(std::size_t sphere) const {
+    if (first.empty()) return {};
+    return {radius.data() + first[sphere], radius.data() + first[sphere + 1]};
+  }
+};
+
 /// The solids for a mesher: each once, cut at the ends of the periods.
 struct Solids {
   Spheres<dynamic> spheres{};  ///< after shrinking, if any; centres in the period
@@ -30,12 +42,14 @@ struct Solids {
   /// infinite without periods.
   double end_distance = 0;
   double bridge_radius = 0;  ///< as asked for, over the radius of the smaller sphere
+  Shells shells = {};        ///< which shrink as their spheres do
 };
 
 struct SolidsOptions {
   ContactTreatment contact = ContactTreatment::none;
   double gap = 0.01;
   double bridge_radius = 0.2;
+  Shells shells = {};
 };
 
 /// Prepares spheres for a mesher. Proven, in exact arithmetic on the given doubles: for gap and shrink what
