@@ -83,6 +83,7 @@ macro(bernal_package name section description)
   endforeach()
   set(CPACK_DEBIAN_${group}_PACKAGE_NAME ${name})
   set(CPACK_DEBIAN_${group}_PACKAGE_SECTION ${section})
+  set(CPACK_DEBIAN_${group}_PACKAGE_SUGGESTS tetgen)  # which meshes are filled by
   set(CPACK_DEBIAN_${group}_DESCRIPTION "${description}")
 endmacro()
 
@@ -99,7 +100,7 @@ It measures packings, predicts how densely sizes pack, and hands packings over
 to LAMMPS, LIGGGHTS, YADE, OpenMC, Gmsh, POV-Ray and others.
 .
 STEP, IGES and BREP are read and written by the recommended libraries of
-Open CASCADE."
+Open CASCADE. The suggested TetGen makes the tetrahedra of bernal mesh."
   command)
 
 set(depends)

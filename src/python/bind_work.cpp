@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
@@ -11,6 +12,7 @@
 #include "bernal/formats/export.hpp"
 #include "bernal/formats/import.hpp"
 #include "bernal/measure/chambers.hpp"
+#include "bernal/mesh_files/mesh_packing.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/report/json.hpp"
 #include "bernal/result/certify_levels.hpp"
@@ -180,6 +182,28 @@ JobPointer export_job(const PackingPointer& of, const std::string& format,
   });
 }
 
+/// The report as JSON, the files, and what they hold.
+JobPointer mesh_job(const PackingPointer& of, const std::string& format,
+                    const std::map<std::string, std::string>& words, const Path& file) {
+  const MeshFileOptions options = mesh_options_of(format, words);
+  return job([=](const Monitor& monitor) -> Job::Finish {
+    MeshedPacking meshed = mesh_packing(*of, options, file, monitor);
+    return [json = mesh_report_as_json(*of, meshed.report), meshed = std::move(meshed)]() -> py::object {
+      return py::make_tuple(json, meshed.files, meshed.note);
+    };
+  });
+}
+
+/// Name and help of each key of meshes.
+std::vector<std::pair<std::string, std::string>> keys_of_meshes() {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const MeshKey& key : mesh_keys())
+    all.emplace_back(key.name, key.words.empty()
+                                   ? key.what
+                                   : fmt::format("{}: {}", key.what, fmt::join(key.words, ", ")));
+  return all;
+}
+
 /// The default name of a format's file.
 std::string file_of_format(const std::string& name) {
   for (const ExportFormat& format : export_formats())
@@ -280,6 +304,8 @@ void bind_work(py::module_& module) {
   module.def("write", &write_job);
   module.def("read", &read_job);
   module.def("export", &export_job);
+  module.def("mesh", &mesh_job);
+  module.def("mesh_keys", &keys_of_meshes);
   module.def("file_of_format", &file_of_format);
   module.def("inspect", &inspect_job);
   module.def("import_", &import_file_job);

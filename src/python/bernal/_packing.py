@@ -329,6 +329,26 @@ class Packing:
         """What a scene calls it that starts from it."""
         return f'"packing-{self.hash}.npy"'
 
+    def mesh(self, format: str, file: str | os.PathLike[str], *, progress: Progress = None, **keys: Any) -> Written:
+        """Meshes the space between the spheres, and the spheres where that is asked for, as `bernal mesh` does:
+        `packing.mesh("openfoam", "case/bed.foam", mesh_size=0.25)`. The program tetgen has to be installed.
+
+        format : "gmsh", "abaqus", "openfoam" or "vtu".
+        Returns files, note and what `bernal mesh --json` prints: tetrahedra, least_sicn, worst, porosity,
+        meshed_porosity, groups, parts, …. Raises InputError for what cannot be meshed, and WriteError. A least SICN
+        below promised_sicn is no error.
+        """
+        plain = {name: _toml.plain(value) for name, value in keys.items()}
+        words = {name: value if isinstance(value, str) else _toml.text_of(value) for name, value in plain.items()}
+        job = _core.mesh(self._core, format, words, _surfaces.path(file, "the file"))
+        report, files, note = finish(job, progress)
+        made: Written = _records.record(Written, report)
+        made.update(files=[Path(each) for each in files], note=note)
+        return made
+
+    assert mesh.__doc__
+    mesh.__doc__ += "\n" + "".join(f"        {name} : {what}.\n" for name, what in _core.mesh_keys())
+
     @property
     def picture(self) -> Picture:
         """The picture in `packing.svg`; empty unless there are two or three dimensions."""
