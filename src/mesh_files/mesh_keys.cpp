@@ -63,6 +63,8 @@ const std::vector<MeshKey>& mesh_keys() {
        0.9},
       {"gap_size", "Edges where surfaces are near each other, in widths of the gap; 4 if absent", "WIDTHS",
        &Of::gap_edge, 0.5, 50},
+      {"layer_size", "Edges on spheres with thin layers, in thicknesses of these; 6 if absent", "WIDTHS",
+       &Of::layer_edge, 0.5, 50},
       {.name = "regions",
        .what = "What is meshed: the fluid, or the spheres too; fluid if absent",
        .placeholder = "WORD",

@@ -107,7 +107,8 @@ VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const
                                                        {.sphere_edge = options.sphere_edge,
                                                         .neck_edge = options.neck_edge,
                                                         .per_gap = options.gap_edge,
-                                                        .solids = options.solids},
+                                                        .solids = options.solids,
+                                                        .per_layer = options.layer_edge},
                                                        monitor);
   take_surface(surface, report);
   report.parts.push_back({"surface", watch.seconds()});

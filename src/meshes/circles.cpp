@@ -5,27 +5,12 @@
 #include <span>
 
 #include "bernal/core/error.hpp"
-#include "meshes/surface_draft.hpp"
+#include "meshes/arcs.hpp"
 
 namespace bernal {
 namespace {
 
 using std::numbers::pi;
-
-/// Directions in the plane of a circle.
-struct CircleFrame {
-  Vector<3> u, v;
-};
-CircleFrame frame_of(const Circle& circle) {
-  const Vector<3> u = circle.normal.unitOrthogonal();
-  return {u, circle.normal.cross(u)};
-}
-
-/// A part of a circle, from angle to angle, with the circles that end it; whole if it ends nowhere.
-struct Arc {
-  double from, to;
-  std::array<std::size_t, 2> ended_by;
-};
 
 class Circles {
  public:
@@ -295,44 +280,6 @@ class Circles {
     return draft_.size_on(piece, q, true, near_of(p));
   }
 
-  std::vector<Arc> arcs_of(std::uint32_t p, std::size_t c) const {
-    const auto& circles = draft_.pieces[p].circles;
-    const Circle& circle = circles[c];
-    const auto [u, v] = frame_of(circle);
-    struct Gone {
-      double from, to;
-      std::size_t by;
-    };
-    std::vector<Gone> gone;
-    for (std::size_t j = 0; j < circles.size(); ++j) {
-      if (j == c || circles[j].kind == Circle::Kind::neck) continue;
-      const double a = circles[j].normal.dot(u), b = circles[j].normal.dot(v), m = std::hypot(a, b);
-      const double level = circles[j].depth - circle.depth * circles[j].normal.dot(circle.normal);
-      if (level <= -circle.radius * m) return {};
-      if (level >= circle.radius * m) continue;
-      const double middle = std::atan2(b, a), half = std::acos(level / (circle.radius * m));
-      double from = middle - half;
-      from -= 2 * pi * std::floor(from / (2 * pi));
-      gone.push_back({from, from + 2 * half, j});
-    }
-    if (gone.empty()) return {{0, 2 * pi, {c, c}}};
-    std::ranges::sort(gone, {}, &Gone::from);
-    std::vector<Arc> arcs;
-    // The end of what is gone so far, begun a turn before.
-    const auto last = std::ranges::max_element(gone, {}, &Gone::to);
-    double end = last->to - 2 * pi;
-    std::size_t by = last->by;
-    for (const Gone& g : gone) {
-      if (g.from > end) arcs.push_back({end, g.from, {by, g.by}});
-      if (g.to > end) {
-        end = g.to;
-        by = g.by;
-      }
-    }
-    std::erase_if(arcs, [](const Arc& arc) { return arc.to - arc.from < 1e-9; });
-    return arcs;
-  }
-
   void fill(std::uint32_t p, std::size_t c) {
     Circle& circle = draft_.pieces[p].circles[c];
     if (!circle.chains.empty() || circle.is_whole) return;
@@ -360,7 +307,7 @@ class Circles {
       if (circle.kind == Circle::Kind::end) q[circle.face / 2] = draft_.boundary.origin[circle.face / 2];
       return q;
     };
-    for (const Arc& arc : arcs_of(p, c)) {
+    for (const Arc& arc : arcs_on(draft_.pieces[p], c)) {
       circle.is_whole = arc.ended_by[0] == c;
       const std::vector<double> angles =
           draft_.pieces[p].is_copied ? copied_angles(p, circle, arc) : angles_of(p, circle, arc, at);
@@ -382,33 +329,14 @@ class Circles {
     fill(around, circle_at(around, draft_.pieces[p].circles[c].face));
   }
 
-  /// Angles of an arc of a copied piece: those of the arc around it that ends at the same circles, without
-  /// its ends, in the same proportions.
+  /// Angles of an arc of a copied piece: those of the arc around it.
   std::vector<double> copied_angles(std::uint32_t p, Circle& copied, const Arc& arc) const {
-    const DraftPiece &piece = draft_.pieces[p], &other = draft_.pieces[piece.around];
-    const std::size_t there = circle_at(piece.around, copied.face);
-    const Circle& circle = other.circles[there];
-    const std::vector<Arc> arcs = arcs_of(piece.around, there);
-    const auto face_of = [](const DraftPiece& of, std::size_t k) { return of.circles[k].face; };
-    const auto [u, v] = frame_of(circle);
-    for (std::size_t k = 0; k < arcs.size(); ++k) {
-      if (face_of(other, arcs[k].ended_by[0]) != face_of(piece, arc.ended_by[0]) ||
-          face_of(other, arcs[k].ended_by[1]) != face_of(piece, arc.ended_by[1]))
-        continue;
-      const auto& chain = circle.chains.at(k);
-      copied.chains_around.push_back(k);
-      const double scale = (arc.to - arc.from) / (arcs[k].to - arcs[k].from);
-      std::vector<double> angles;
-      for (std::size_t i = circle.is_whole ? 0 : 1; i + (circle.is_whole ? 0 : 1) < chain.size(); ++i) {
-        const Vector<3> d = draft_.made.vertices[chain[i]] - other.piece.center;
-        double on = std::atan2(d.dot(v), d.dot(u)) - arcs[k].from;
-        on -= 2 * pi * std::floor(on / (2 * pi));
-        if (circle.is_whole && i == 0) on = 0;
-        angles.push_back(arc.from + scale * on);
-      }
-      return angles;
-    }
-    fail();
+    const std::uint32_t around = draft_.pieces[p].around;
+    const std::size_t there = circle_at(around, copied.face);
+    const auto like = arc_like(draft_, draft_.pieces[p], arc, draft_.pieces[around], there);
+    if (!like) fail();
+    copied.chains_around.push_back(like->chain);
+    return like->angles;
   }
 
   /// Angles of points along an arc, without its ends, as many as the sizes there ask for.

@@ -171,7 +171,18 @@ std::vector<std::array<std::uint8_t, 3>> ends_of_middles(const VolumeMesh& mesh)
   return on;
 }
 
-/// Makes edges straight until no tetrahedron is folded, as straight edges of one may fold its neighbours.
+/// Whether a tetrahedron is not folded, and curved edges do not make it poor.
+bool is_good(const VolumeMesh& mesh, std::size_t t) {
+  constexpr double poor = 0.12;
+  if (!(least_jacobian_coefficient(mesh, t) > 0)) return false;
+  const double curved = curved_sicn(mesh, t);
+  if (curved >= poor) return true;
+  const TetrahedronCorners& c = mesh.tetrahedra[t];
+  return curved >= sicn(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]);
+}
+
+/// Makes edges straight until no tetrahedron is folded or poor for them, as straight edges of one may fold
+/// its neighbours.
 void straighten_folded(VolumeMesh& mesh, Middles& middles, const std::array<std::size_t, 3>& first_pair) {
   std::vector<std::uint8_t> is_new(mesh.middles.size(), 1), next;
   for (bool changed = true; changed;) {
@@ -187,7 +198,7 @@ void straighten_folded(VolumeMesh& mesh, Middles& middles, const std::array<std:
       const auto place = [&](std::uint32_t node) { return node - mesh.vertices.size(); };
       if (std::ranges::none_of(nodes, [&](std::uint32_t node) { return is_new[place(node)]; }) ||
           std::ranges::all_of(nodes, [&](std::uint32_t node) { return middles.is_straight[place(node)]; }) ||
-          least_jacobian_coefficient(mesh, t) > 0)
+          is_good(mesh, t))
         continue;
       for (const std::uint32_t node : nodes)
         if (!middles.is_straight[place(node)]) straighten(node);

@@ -13,7 +13,8 @@ namespace bernal {
 /// Every tetrahedron is the image of a straight one without folds: the determinant of the map's derivative,
 /// a polynomial of degree 3, is positive since its 20 coefficients in Bernstein's basis are (which bound it
 /// from below; see Johnen, Remacle and Geuzaine, Geometrical validity of curvilinear finite elements, 2013).
-/// Where one is not, the edges of that tetrahedron are straight.
+/// Where one is not, or the SICN is below 0.12 for the curves' sake, the edges of that tetrahedron are
+/// straight.
 ///
 /// Returns how many edges lie on round surfaces, and how many of these stay straight for that reason. Cost:
 /// some µs a tetrahedron, and 200 bytes. Precondition: not yet of second order.

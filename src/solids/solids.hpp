@@ -67,12 +67,14 @@ Solids solids_of(const Spheres<dynamic>&, const Domain&, const SolidsOptions&, c
 /// The domain with the ends of its periods where no sphere nearly touches them: no face, edge or corner of
 /// the box a sphere (relative to the radius), no face a bridge. On each axis the candidates are the middles
 /// of the widest gaps between extents; the best combination is taken. The spheres do not move; `wrap` moves
-/// their centres into the period. Deterministic. Cost: O(N log N) and some million distances.
+/// their centres into the period. Deterministic. Cost: O(N log N) and some million distances, in proportion
+/// to the square of `most`, the places tried on an axis.
 struct ClearEnds {
   Domain domain;
   double distance;  ///< least, over the radius; infinite without periods
 };
-ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&, const std::vector<Bridge>& bridges = {});
+ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&, const std::vector<Bridge>& bridges = {},
+                          std::size_t most = 40);
 
 /// Volume of a spherical cap, π h² (3 r - h) / 3.
 double cap_volume(double radius, double height);

@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 #include "bernal/mesh_files/mesh_packing.hpp"
 #include "check.hpp"
@@ -17,6 +18,17 @@ height = 2.5
 [spheres]
 count = 5
 diameter = 1
+)";
+
+constexpr const char* layered_spheres = R"(unit = "mm"
+[container]
+kind = "periodic"
+[spheres]
+count = 12
+packing_fraction = 0.35
+radius = 1
+gap = 0.1
+layers = [{ name = "core" }, { name = "thin coat", thickness = 0.1 }]
 )";
 
 struct Packed {
@@ -63,6 +75,35 @@ TEST(MeshCommand, ElementsOfSecondOrderHoldTheStatedPorosity) {
   const auto report = nlohmann::json::parse(ended.out);
   EXPECT_GT(report["least_curved_sicn"], 0);
   EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 1e-4);
+}
+
+TEST(MeshCommand, LayersAreRegionsOfTheStatedVolumes) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Folder folder;
+  const Ended packed = bernal(
+      {"pack", folder.write("scene.toml", std::string(layered_spheres)).string(), "-o", folder / "out"});
+  ASSERT_EQ(packed.status, 0) << packed.err;
+  const auto mesh = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {
+        "mesh", folder / "out", "--to", "abaqus", "-o", folder / "rve.inp", "--contact", "gap", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ended ended = bernal(words);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  };
+  const auto report = mesh({"--regions", "all", "--order", "2"});
+  EXPECT_GE(report["least_curved_sicn"], 0.1);
+  std::map<std::string, nlohmann::json> groups;
+  for (const auto& group : report["groups"]) groups[group["name"]] = group;
+  ASSERT_EQ(groups.size(), 3U);
+  for (const char* name : {"fluid", "layer_core", "layer_thin_coat"}) {
+    ASSERT_TRUE(groups.contains(name)) << name;
+    EXPECT_NEAR(groups[name]["volume"].get<double>() / groups[name]["stated_volume"].get<double>(), 1, 2e-4);
+  }
+  const double ball = 4 * 3.14159265358979 / 3 * 12;
+  EXPECT_NEAR(groups["layer_core"]["stated_volume"].get<double>(), ball * 0.9 * 0.9 * 0.9, 1e-9);
+  EXPECT_TRUE(fs::exists(folder / "rve.inp"));
+  EXPECT_EQ(mesh({})["groups"].size(), 1U);  // the fluid alone
 }
 
 TEST(MeshCommand, RefusesWhatItCannotWrite) {

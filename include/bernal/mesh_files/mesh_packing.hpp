@@ -36,6 +36,7 @@ struct MeshFileOptions {
   double sphere_edge = 0.3;    ///< longest edges on spheres
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
+  double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
   int order = 1;               ///< 2: with middles of edges, on the true spheres
 };
