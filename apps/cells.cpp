@@ -3,17 +3,14 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include "bernal/cells/write_cells.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "say_unpublished.hpp"
-#include "writing.hpp"
 
 using namespace bernal;
 
@@ -72,13 +69,10 @@ int write_cells_of(CellsCall call) {
   if (!call.file.empty() && call.table.lexically_normal() == call.file.lexically_normal())
     throw Error(ErrorCode::bad_argument, "-o and --table name the same file; give each its own",
                 {call.file.string()});
-  std::optional<tbb::global_control> limit;
-  if (call.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
+  const auto limit = limited_to(call.threads);
   ProgressBar bar(call.quiet || call.json);
   bar.now("read");
-  const Packing packing = read_packing(call.folder);
-  say_if_unpublished(call.folder);
+  const Packing packing = read_result(call.folder);
   if (!call.options.format.empty()) require_cell_format(call.options, packing.spheres.dimension());
   std::optional<ShapedCells> made;
   if (call.options.format.empty() || call.json || !call.table.empty()) {

@@ -1,4 +1,5 @@
 #include "bernal/cost/cost.hpp"
+#include "bernal/cost/mesh_cost.hpp"
 
 #include <memory>
 
@@ -21,7 +22,7 @@ struct CostCall {
   std::string time = "10m";
   int seeds = 2;
   int threads = 0;
-  bool fresh = false;
+  bool fresh = false, meshes = false;
   bool json = false;
   bool quiet = false;
 };
@@ -94,6 +95,54 @@ void print_words(const CostReport& report, bool quiet) {
   for (const auto& file : report.files) say(stdout, "{}\n", plain_text(file.string(), 5000));
 }
 
+void print_meshes_as_json(const MeshCostReport& report) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const MeshCostRow& row : report.rows) {
+    rows.push_back({{"mesh_size", row.sphere_edge},
+                    {"neck_size", row.neck_edge},
+                    {"expected",
+                     {{"tetrahedra", row.expected.tetrahedra},
+                      {"seconds", row.expected.seconds},
+                      {"memory_bytes", row.expected.bytes}}},
+                    {"measured", nullptr}});
+    if (row.measured)
+      rows.back()["measured"] = {{"tetrahedra", row.measured->tetrahedra},
+                                 {"seconds", row.seconds()},
+                                 {"memory_bytes", row.bytes()},
+                                 {"least_sicn", row.measured->least_sicn},
+                                 {"porosity", row.measured->porosity},
+                                 {"meshed_porosity", row.measured->meshed_porosity}};
+  }
+  const nlohmann::ordered_json json = {{"spheres", report.spheres},
+                                       {"meshes", std::move(rows)},
+                                       {"files", {plain_text(report.file.string(), 5000)}}};
+  say(stdout, "{}\n", json.dump(2));
+}
+
+void print_meshes(const MeshCostReport& report) {
+  say(stderr, "{:>9} {:>9} {:>24} {:>20} {:>16} {:>10} {:>14}\n", "mesh-size", "neck-size",
+      "tetrahedra (expected)", "seconds", "GB", "least SICN", "porosity off");
+  for (const MeshCostRow& row : report.rows) {
+    const MeshPrice& expected = row.expected;
+    std::string cells, seconds, memory, quality = "-", error = "-";
+    const auto both = [](const std::string& measured, const std::string& asked) {
+      return fmt::format("{} ({})", measured, asked);
+    };
+    const auto count = [](double n) { return grouped(static_cast<std::uint64_t>(n)); };
+    cells = both(row.measured ? grouped(row.measured->tetrahedra) : "-", count(expected.tetrahedra));
+    seconds = both(row.measured ? fmt::format("{:.1f}", row.seconds()) : "-",
+                   fmt::format("{:.1f}", expected.seconds));
+    memory = both(row.measured ? fmt::format("{:.2f}", row.bytes() / 1e9) : "-",
+                  fmt::format("{:.2f}", expected.bytes / 1e9));
+    if (row.measured) {
+      quality = fmt::format("{:.3f}", row.measured->least_sicn);
+      error = fmt::format("{:+.4f}", row.porosity_error());
+    }
+    say(stderr, "{:>9} {:>9} {:>24} {:>20} {:>16} {:>10} {:>14}\n", row.sphere_edge, row.neck_edge, cells,
+        seconds, memory, quality, error);
+  }
+}
+
 /// The topmost folder that has to be made so that this one exists; empty if it exists.
 std::filesystem::path to_be_made(const std::filesystem::path& folder) {
   std::error_code unknown;
@@ -104,18 +153,20 @@ std::filesystem::path to_be_made(const std::filesystem::path& folder) {
   return top;
 }
 
-/// Measures what accuracy costs. If the call is refused, the folders that it has made go again.
-CostReport measured(const CostCall& call, ProgressBar& bar) {
+/// Measures what accuracy costs, or what meshes do. If the call is refused, the folders that it has made go
+/// again.
+template <class Measure>
+auto measured(const CostCall& call, ProgressBar& bar, const Measure& measure) {
   const Scene scene = read_scene(call.scene);
   const std::filesystem::path made = to_be_made(call.folder);
   try {
     check_writable(call.folder);
-    return measure_cost(scene, call.folder,
-                        {.seconds = *seconds_of(call.time),
-                         .seeds = call.seeds,
-                         .threads = call.threads,
-                         .fresh = call.fresh,
-                         .monitor = bar.monitor()});
+    return measure(scene, call.folder,
+                   CostOptions{.seconds = *seconds_of(call.time),
+                               .seeds = call.seeds,
+                               .threads = call.threads,
+                               .fresh = call.fresh,
+                               .monitor = bar.monitor()});
   } catch (const Error&) {
     std::error_code unknown;
     if (!made.empty()) std::filesystem::remove_all(made, unknown);
@@ -126,7 +177,7 @@ CostReport measured(const CostCall& call, ProgressBar& bar) {
 int cost(const CostCall& call) {
   ProgressBar bar(call.quiet);
   bar.now("read");
-  const CostReport report = measured(call, bar);
+  const CostReport report = measured(call, bar, measure_cost);
   bar.clear();
   if (report.rows.empty()) {
     say(stderr, "bernal: stopped before the scene as it is was measured; what is known stands in {}\n",
@@ -134,6 +185,20 @@ int cost(const CostCall& call) {
     return exit_code::not_reached;
   }
   call.json ? print_json(report) : print_words(report, call.quiet);
+  return report.cancelled ? exit_code::not_reached : exit_code::done;
+}
+
+int cost_of_meshes(const CostCall& call) {
+  ProgressBar bar(call.quiet);
+  bar.now("read");
+  const MeshCostReport report = measured(call, bar, measure_mesh_cost);
+  bar.clear();
+  if (call.json) {
+    print_meshes_as_json(report);
+  } else {
+    if (!call.quiet) print_meshes(report);
+    say(stdout, "{}\n", plain_text(report.file.string(), 5000));
+  }
   return report.cancelled ? exit_code::not_reached : exit_code::done;
 }
 
@@ -152,6 +217,8 @@ Command cost_command() {
            {"--seeds", &call->seeds, "Runs of every setting, each with a seed of its own; 2 if absent", "N"},
            1, 100),
        threads_option(call->threads, "every packing"),
+       {"--meshes", &call->meshes,
+        "Pack the scene once, then mesh it with shorter and shorter edges: cells, seconds, memory, quality"},
        {"--fresh", &call->fresh, "Forget what an earlier call measured in this folder"},
        json_option(call->json),
        quiet_option(call->quiet)},
@@ -163,19 +230,24 @@ Command cost_command() {
            "every setting with several seeds, in an order that a machine that slows down hurts all alike. "
            "Seconds are those of the processor, all threads together. On a machine with nothing else to do "
            "the "
-           "times are better.\n\nFiles of the names below that it did not write, or that were changed since, "
+           "times are better.\n\nWith --meshes what bernal mesh makes of the packing is measured instead, as "
+           "far as the "
+           "time goes; beyond it only what is expected is said, in brackets.\n\nFiles of the names below "
+           "that it did not write, or that were changed since, "
            "are refused before anything runs.",
        .lists = {{.title = "Files",
                   .text = "what is written into DIR.",
                   .entries = {{"cost.csv, cost.md, cost.html, cost.svg", "what was measured"},
+                              {"meshes.csv", "with --meshes alone: a row for each length of edges"},
                               {"recommended.toml", "the scene as is advised"},
                               {"trials.csv",
                                "every run: the same call again goes on where the last one ended"}}}},
        .examples = {{"bernal cost data/scenes/relax_equal.toml -o out", "ten minutes"},
                     {"bernal cost data/scenes/hopper.toml -o out --time 1h", "an hour"},
+                    {"bernal cost bed.toml -o out --meshes", "what bernal mesh would need by --mesh-size"},
                     {"bernal pack out/recommended.toml", "what is advised"}},
        .exit_codes = {{"0", "done, also when the time is over"},
                       {"2", "bad input, or not one run ends in the time"},
                       {"3", "stopped by Ctrl-C: what was measured is written"}}},
-      [call] { return cost(*call); }};
+      [call] { return call->meshes ? cost_of_meshes(*call) : cost(*call); }};
 }

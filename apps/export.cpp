@@ -9,13 +9,11 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "bernal/scene/scene_reference.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "say_unpublished.hpp"
-#include "writing.hpp"
 
 using namespace bernal;
 
@@ -34,8 +32,7 @@ int export_result(const ExportCall& call) {
   ProgressBar bar(call.quiet);
   const Monitor monitor = bar.monitor();
   bar.now("read");
-  const Packing packing = read_packing(call.folder);
-  say_if_unpublished(call.folder);
+  const Packing packing = read_result(call.folder);
   if (interrupted()) throw Cancelled();
   bar.now("write");
   const WrittenExport written = write_export(packing, output, call.file, monitor);

@@ -13,8 +13,8 @@
 #include "commands.hpp"
 #include "measured.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "writing.hpp"
 
 using namespace bernal;
 

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <tbb/global_control.h>
 
 #include "bed_text.hpp"
 #include "bernal/core/error.hpp"
@@ -20,8 +19,8 @@
 #include "contact_text.hpp"
 #include "layer_text.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "say_unpublished.hpp"
 #include "structure_text.hpp"
 #include "wall_text.hpp"
 
@@ -48,8 +47,7 @@ int draw_section(const MeasureCall& call) {
   if (call.json)
     throw Error(ErrorCode::bad_argument,
                 "--section draws a picture, and --json prints measurements; ask for one");
-  const Packing packing = read_packing(call.folder);
-  say_if_unpublished(call.folder);
+  const Packing packing = read_result(call.folder);
   write_section(packing, *call.plane, call.picture);
   say(stdout, "{}\n", plain_text(call.picture.string(), 5000));
   return exit_code::done;
@@ -238,13 +236,10 @@ ContactOptions contact_options_of(const Packing& packing, const MeasureCall& cal
 
 int measure_folder(const MeasureCall& call) try {
   if (call.plane) return draw_section(call);
-  std::optional<tbb::global_control> limit;
-  if (call.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
+  const auto limit = limited_to(call.threads);
   ProgressBar bar(call.json);
   bar.now("measure");
-  const Packing packing = read_packing(call.folder);
-  say_if_unpublished(call.folder);
+  const Packing packing = read_result(call.folder);
   if (!call.contacts.empty()) check_contacts_file(call.contacts, packing.spheres.dimension());
   const Measurements measured = measured_of(packing, call, bar.monitor());
   bar.clear();

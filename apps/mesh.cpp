@@ -3,17 +3,14 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/mesh_files/mesh_packing.hpp"
-#include "bernal/result/read_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "say_unpublished.hpp"
-#include "writing.hpp"
 
 using namespace bernal;
 
@@ -79,13 +76,10 @@ void print_report(const BedMeshReport& report, std::string_view unit) {
 int mesh_of(const MeshCall& call) {
   require_named_file(call.file);
   const MeshFileOptions options = mesh_options_of(call.format, call.words);
-  std::optional<tbb::global_control> limit;
-  if (call.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(call.threads));
+  const auto limit = limited_to(call.threads);
   ProgressBar bar(call.quiet || call.json);
   bar.now("read");
-  const Packing packing = read_packing(call.folder);
-  say_if_unpublished(call.folder);
+  const Packing packing = read_result(call.folder);
   const MeshedPacking meshed = mesh_packing(packing, options, call.file, bar.monitor());
   bar.clear();
   const BedMeshReport& report = meshed.report;

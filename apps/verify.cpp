@@ -27,8 +27,8 @@
 #include "bernal/verify/certificate.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
+#include "results.hpp"
 #include "say.hpp"
-#include "say_unpublished.hpp"
 
 using namespace bernal;
 

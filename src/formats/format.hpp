@@ -45,7 +45,7 @@ struct Exported {
   double overlap = 0;
   std::uint64_t protruding = 0;
   double protrusion = 0;
-  /// For formats of solids, see OutputTable; made from `spheres` and `domain`.
+  /// For formats of solids; made from `spheres` and `domain`.
   Solids solids{};
 
   std::size_t size() const { return spheres.size(); }
@@ -149,13 +149,14 @@ struct Format {
   // Writing; `writes` is empty if the format is not written.
   std::string_view writes = {};             ///< the program, and what the file holds for it
   std::vector<std::string_view> keys = {};  ///< its options besides those of all formats
-  std::string_view file = {};               ///< this and the next eight are as in an OutputTable
+  std::string_view file = {};               ///< this and the next seven are as in an OutputTable
   std::vector<std::string_view> endings = {};
   std::string_view alone = {};
   int least_dimension = 3, most_dimensions = 3;
   std::optional<Unit> unit = {};
   std::string_view sizes = "radius";
-  bool solids = false, is_folder = false;
+  bool is_folder = false;
+  bool solids = false;  ///< whether it is given `Exported::solids`
   std::vector<schema::Choice> choices = {};
   std::function<void(const void*, const schema::Section&)> rule = {};
   Precision precision = Precision::as_double;

@@ -78,7 +78,6 @@ OutputTable table_for(const Format& format) {
                    .most_dimensions = format.most_dimensions,
                    .unit = format.unit,
                    .sizes = format.sizes,
-                   .solids = format.solids,
                    .is_folder = format.is_folder};
   made.keys.choices.insert(made.keys.choices.end(), format.choices.begin(), format.choices.end());
   made.keys.rule = format.rule;

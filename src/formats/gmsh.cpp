@@ -33,9 +33,6 @@ Exported in_length_of_model(const Exported& file, int exponent) {
                by = exponent > 0 ? std::pow(10, exponent) : 1;
   const auto into = [=](double length) { return length * times / by; };
   const Mapping mapping{[=](double x, int) { return into(x); }, into};
-  const auto convert_cuts = [&](std::vector<Cut>& cuts) {
-    for (Cut& cut : cuts) cut.keeps.offset = into(cut.keeps.offset);
-  };
   const auto convert_report = [&](ContactReport& report) {
     for (double* volume : {&report.volume_before, &report.volume_after, &report.domain_volume})
       *volume = into(into(into(*volume)));
@@ -52,12 +49,7 @@ Exported in_length_of_model(const Exported& file, int exponent) {
   for (Piece& piece : solids.pieces) {
     piece.center = mapping.point(piece.center);
     piece.radius = into(piece.radius);
-    convert_cuts(piece.cuts);
-  }
-  for (Bridge& bridge : solids.bridges) {
-    for (Vector<3>& rim : bridge.rims) rim = mapping.point(rim);
-    bridge.radius = into(bridge.radius);
-    convert_cuts(bridge.cuts);
+    for (Cut& cut : piece.cuts) cut.keeps.offset = into(cut.keeps.offset);
   }
   return made;
 }
@@ -65,10 +57,9 @@ Exported in_length_of_model(const Exported& file, int exponent) {
 /// The reason why no solids can be made: untreated spheres that overlap or cross the walls; empty if there is
 /// none.
 std::string reason_against_solids(const Exported& file) {
-  const ContactTreatment treatment = file.contacts.treatment;
-  if (treatment != ContactTreatment::none && treatment != ContactTreatment::bridge) return {};
-  if (file.overlap > 0) return "spheres overlap, and contact gap, shrink or cap makes room";
-  if (file.protruding > 0) return "spheres cross the walls, and contact gap, shrink or cap makes room";
+  if (file.contacts.treatment != ContactTreatment::none) return {};
+  if (file.overlap > 0) return "spheres overlap, and contact gap or shrink makes room";
+  if (file.protruding > 0) return "spheres cross the walls, and contact gap or shrink makes room";
   return {};
 }
 
@@ -87,10 +78,6 @@ Eigen::AngleAxisd turn_to(const Seam& seam) {
   to.col(2) = seam.pole;
   to.col(1) = seam.pole.cross(seam.meridian);
   return Eigen::AngleAxisd(to);
-}
-
-bool has_end(const std::vector<Cut>& cuts) {
-  return std::ranges::any_of(cuts, [](const Cut& cut) { return cut.face != Cut::contact; });
 }
 
 std::string numbers(const Vector<3>& v) { return row_of(v, ", "); }
@@ -135,33 +122,11 @@ std::string pieces_in_python(const Exported& file) {
   return text;
 }
 
-/// The cylinders that cut caps off spheres, on the planes of the cuts, wide and high enough for the caps.
-std::string caps_in_python(const Solids& solids) {
-  std::string text;
-  for (std::size_t p = 0; p < solids.pieces.size(); ++p) {
-    const Piece& piece = solids.pieces[p];
-    std::string tools;
-    for (const Cut& cut : piece.cuts) {
-      if (cut.face != Cut::contact) continue;
-      const double depth = cut.keeps.offset - cut.keeps.normal.dot(piece.center), r = piece.radius;
-      if (depth < r)
-        tools +=
-            fmt::format("({}, {}, {}), ", numbers(piece.center + depth * cut.keeps.normal),
-                        numbers(2 * (r - depth) * cut.keeps.normal), 1.5 * std::sqrt(r * r - depth * depth));
-    }
-    if (!tools.empty()) text += fmt::format("    {}: [{}],\n", p + 2, tools);
-  }
-  return text;
-}
-
-/// The numbers of the volumes that an end of a period cuts: 1 is the domain, followed by the pieces and the
-/// bridges in order.
+/// The numbers of the volumes that an end of a period cuts: 1 is the domain, followed by the pieces in order.
 std::string cut_volumes(const Solids& solids) {
   std::vector<std::size_t> volumes;
   for (std::size_t p = 0; p < solids.pieces.size(); ++p)
-    if (has_end(solids.pieces[p].cuts)) volumes.push_back(2 + p);
-  for (std::size_t b = 0; b < solids.bridges.size(); ++b)
-    if (has_end(solids.bridges[b].cuts)) volumes.push_back(2 + solids.pieces.size() + b);
+    if (!solids.pieces[p].cuts.empty()) volumes.push_back(2 + p);
   return fmt::format("{}", fmt::join(volumes, ", "));
 }
 
@@ -181,22 +146,18 @@ std::string names_of_groups(const Exported& file) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Exact volume fractions: of whole balls, by type, and of the rest. Empty if solids meet in a way without a
-/// formula.
+/// Exact volume fractions: of whole balls, by type, and of the rest. Empty where balls overlap or stick out.
 std::string exact_fractions(const Exported& file) {
-  const ContactReport& contacts = file.contacts;
-  if (contacts.meetings > 0 || !reason_against_solids(file).empty()) return {};
+  if (!reason_against_solids(file).empty()) return {};
   const double total = volume_of(file.domain);
   std::vector<double> of_type(file.type_count, 0.0);
   const auto& radii = file.solids.spheres.r;
   for (std::size_t i = 0; i < radii.size(); ++i)
     of_type[file.types[i] - 1] += cap_volume(radii[i], 2 * radii[i]);
-  const bool cut = contacts.treatment == ContactTreatment::cap;
   double solid = 0;
   for (const double volume : of_type) solid += volume;
-  if (contacts.treatment == ContactTreatment::bridge || cut) solid = contacts.volume_after;
   std::string text = fmt::format("\"matrix\": {}", 1 - solid / total);
-  for (std::uint32_t type = 1; !cut && type <= file.type_count; ++type)
+  for (std::uint32_t type = 1; type <= file.type_count; ++type)
     text += fmt::format(", {}: {}", toml_string(file.name_of_type(type)), of_type[type - 1] / total);
   return text;
 }
@@ -207,10 +168,6 @@ void write_gmsh(const Exported& exported, StagedFolder& staged) {
   const std::string_view unit = name_of(file.unit());
   const std::string length = exponent == 0 ? "1" : fmt::format("1e{}", exponent);
   const Bounds<3> bounds = bounds_of(file.domain);
-  std::string bridges;
-  for (const Bridge& bridge : file.solids.bridges)
-    bridges += fmt::format("    ({}, {}, {}, {}),\n", numbers(bridge.rims[0]), numbers(bridge.rims[1]),
-                           bridge.radius, bridge.radius);
   staged.write(
       file.output.file.string(),
       filled(gmsh_py,
@@ -232,14 +189,12 @@ void write_gmsh(const Exported& exported, StagedFolder& staged) {
               {"MESH_ORDER", fmt::format("{}", file.output.mesh_order)},
               {"PIECES", pieces_in_python(file)},
               {"CUT_AT_ENDS", cut_volumes(file.solids)},
-              {"CAPS", caps_in_python(file.solids)},
-              {"BRIDGES", bridges},
               {"NARROW", narrow_places_in_python(file)},
               {"DOMAIN", std::visit(PythonDomain(), file.domain)}}));
 }
 
 std::string note_of_gmsh(const Exported& file) {
-  std::string note = fmt::format("{} solids", file.solids.pieces.size() + file.solids.bridges.size());
+  std::string note = fmt::format("{} solids", file.solids.pieces.size());
   if (std::isfinite(file.solids.end_distance))
     note += fmt::format(", ends of the periods at least {:.3g} radii from touching a sphere",
                         file.solids.end_distance);
@@ -271,7 +226,7 @@ Format gmsh_format() {
           "Gmsh 4.8 and later: a Python script that makes conforming tetrahedra of matrix and spheres with "
           "equal nodes at opposite ends of periods. The walls of a CAD part are its triangles, joined to "
           "polygons where they lie in one plane",
-      .keys = {"unit", "types", "bridge_radius", "mesh_size", "mesh_gap", "mesh_order"},
+      .keys = {"unit", "types", "mesh_size", "mesh_gap", "mesh_order"},
       .file = "packing.py",
       .sizes = "solids",
       .solids = true,

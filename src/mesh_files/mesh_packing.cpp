@@ -92,9 +92,16 @@ Shells shells_of(const Packing& packing, const MeshFileOptions& options) {
   return shells;
 }
 
-/// The mesh, with what it is like so far.
-VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
-                   BedMeshReport& report) {
+/// The mesh, its names, and what it is like.
+struct NamedMesh {
+  VolumeMesh mesh;
+  MeshGroups groups;
+};
+NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
+                  BedMeshReport& report) {
+  if (packing.spheres.empty()) refuse("there are no spheres to mesh around");
+  report.spheres = packing.spheres.size();
+  report.domain_volume = volume_of(packing.domain);
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
   const Solids solids = solids_of(packing.spheres, packing.domain,
@@ -123,7 +130,9 @@ VolumeMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const
     report.straight_edges = edges.kept_straight;
     report.parts.push_back({"second order", curving.seconds()});
   }
-  return mesh;
+  MeshGroups groups = groups_of(mesh, packing.domain, classes_of_mesh(packing));
+  take_mesh(mesh, groups, report);
+  return {std::move(mesh), std::move(groups)};
 }
 
 std::vector<std::string> names_of_files(const MeshWriter& writer, const fs::path& name) {
@@ -149,6 +158,13 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
     refuse(fmt::format("the format {} has no elements of second order", format.name));
 }
 
+BedMeshReport measure_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor) {
+  require_mesh_format(options, packing.spheres.dimension());
+  BedMeshReport report;
+  mesh_of(packing, options, monitor, report);
+  return report;
+}
+
 MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& options, const fs::path& named,
                            const Monitor& monitor) {
   require_mesh_format(options, packing.spheres.dimension());
@@ -157,16 +173,11 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   if (name.empty() || name == "." || name == "..")
     throw Error(ErrorCode::cannot_write, "is a folder; give the name of a file in it", {named.string()});
   require_free(folder, names_of_files(writer, name));
-  if (packing.spheres.empty()) refuse("there are no spheres to mesh around");
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;
-  report.spheres = packing.spheres.size();
-  report.domain_volume = volume_of(packing.domain);
-  const VolumeMesh mesh = mesh_of(packing, options, monitor, report);
-  const MeshGroups groups = groups_of(mesh, packing.domain, classes_of_mesh(packing));
+  const auto [mesh, groups] = mesh_of(packing, options, monitor, report);
   const Stopwatch writing;
   monitor.report({"write", -1, options.format});
-  take_mesh(mesh, groups, report);
   StagedFolder staged(folder);
   const std::string title = fmt::format("bernal {}: mesh of {} spheres in a {}", text_of(this_program()),
                                         packing.spheres.size(), name_of(packing.domain));

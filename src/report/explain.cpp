@@ -81,6 +81,12 @@ std::string_view density_in_words(const BedTarget& bed) {
   return "poured,";
 }
 
+/// 312,345 as 310,000.
+std::uint64_t in_two_digits(double count) {
+  const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(std::max(1.0, count))) - 1));
+  return static_cast<std::uint64_t>(unit * std::round(count / unit));
+}
+
 }  // namespace
 
 std::string explain(const Plan& plan) {
@@ -101,8 +107,13 @@ std::string explain(const Plan& plan) {
         "           with what lies inside of them about {:.4g} spheres, which stand for themselves{}\n",
         expected_count_of_all_levels(plan), mass ? fmt::format(", and {:.4g} kg", *mass) : std::string());
   }
-  text += fmt::format("           about {} to pack them on one core, {} of memory\n\n",
+  text += fmt::format("           about {} to pack them on one core, {} of memory\n",
                       duration_in_words(plan.expected_seconds), bytes_in_words(plan.expected_memory_bytes));
+  if (const std::optional<MeshPrice> mesh = price_of_mesh(plan))
+    text += fmt::format("           a mesh around them by bernal mesh: about {} tetrahedra, {}, {}\n",
+                        grouped(in_two_digits(mesh->tetrahedra)), duration_in_words(mesh->seconds),
+                        bytes_in_words(mesh->bytes));
+  text += '\n';
 
   text += effects_in_words(plan);
   if (!plan.absent.empty())

@@ -25,6 +25,12 @@ static nlohmann::ordered_json insides_of(const Plan& plan) {
   return all;
 }
 
+static nlohmann::ordered_json mesh_of(const Plan& plan) {
+  const std::optional<MeshPrice> mesh = price_of_mesh(plan);
+  if (!mesh) return {};
+  return {{"tetrahedra", mesh->tetrahedra}, {"seconds", mesh->seconds}, {"memory_bytes", mesh->bytes}};
+}
+
 std::string plan_as_json(const Plan& plan) {
   using nlohmann::ordered_json;
   ordered_json container = {{"kind", schema::word_of(plan.scene.container, plan.domain)},
@@ -89,7 +95,8 @@ std::string plan_as_json(const Plan& plan) {
         {"memory_bytes", plan.expected_memory_bytes},
         {"count_of_all_levels", expected_count_of_all_levels(plan)},
         {"mass", mass ? ordered_json(*mass) : ordered_json()},
-        {"inside", insides_of(plan)}}},
+        {"inside", insides_of(plan)},
+        {"mesh", mesh_of(plan)}}},
       {"caution", plan.caution.empty() ? ordered_json() : ordered_json(plan.caution)},
       {"notes", plan.hints},
       {"outputs", outputs},

@@ -268,13 +268,13 @@ void complete_output(Output& output, const Scene& scene) {
   }
   const bool shrinks = output.contact == ContactTreatment::none || output.contact == ContactTreatment::gap ||
                        output.contact == ContactTreatment::shrink;
-  if (!table.solids && !shrinks) {
+  if (!table.has_bridges() && !shrinks) {
     std::vector<std::string_view> others;
     for (const OutputTable* other : output_tables())
-      if (other->solids) others.push_back(other->name());
+      if (other->has_bridges()) others.push_back(other->name());
     section.fail("contact", fmt::format("the format \"{}\" holds whole spheres: contact is gap or shrink; "
-                                        "bridges and caps are for {}",
-                                        table.name(), fmt::join(others, ", ")));
+                                        "{} have bridges and caps, and bernal mesh makes tetrahedra of them",
+                                        table.name(), fmt::join(others, " and ")));
   }
   if (const auto& said = section.locations.keys;
       said.contains("density") && said.contains("material_density"))

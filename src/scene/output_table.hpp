@@ -32,12 +32,11 @@ struct OutputTable {
   int least_dimension = 3, most_dimensions = 3;
   std::optional<Unit> unit = {};      ///< that the program expects; none: whatever the scene has
   std::string_view sizes = "radius";  ///< or "diameter": what the file holds
-  /// Whether it holds solids of any shape, so that bridges and caps are possible; else spheres or an image of
-  /// them, which can only shrink.
-  bool solids = false;
-  bool is_folder = false;  ///< what its name is given to, see `is_folder`
+  bool is_folder = false;             ///< what its name is given to, see `is_folder`
 
   std::string_view name() const { return keys.name; }
+  /// Whether spheres may be joined or cut in it; else they can only shrink.
+  bool has_bridges() const { return keys.find("bridge_radius") != nullptr; }
 };
 
 /// All of them, in the order in which people are told of them; formats/ holds the list.

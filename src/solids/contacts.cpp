@@ -48,14 +48,6 @@ std::string number_of(std::size_t n, std::string_view one, std::string_view more
   return fmt::format("{} {}", grouped(n), n == 1 ? one : more);
 }
 
-/// Smaller elements do not improve the mesh at the sharp corners of rims.
-std::string necks_text(const ContactReport& report) {
-  return (report.walls == 0 ? std::string()
-                            : fmt::format("; {} as near stay as they are",
-                                          number_of(report.walls, "place of walls", "places of walls"))) +
-         "; elements at the rims are poor whatever their size: smallest SICN below 0.1";
-}
-
 double at_most(double diameter, bool single) {
   if (!single) return diameter;
   const auto nearest = static_cast<float>(diameter);
@@ -150,7 +142,10 @@ std::string contact_text(const ContactReport& report) {
           report.meetings == 0
               ? std::string("none meets a third sphere or another bridge")
               : fmt::format("{} a third sphere or each other", number_of(report.meetings, "meets", "meet")),
-          report.smallest_angle, necks_text(report));
+          report.smallest_angle,
+          report.walls == 0 ? std::string()
+                            : fmt::format("; {} as near stay as they are",
+                                          number_of(report.walls, "place of walls", "places of walls")));
     case ContactTreatment::cap:
       return fmt::format(
           "caps cut off {} at {} and {}, flat faces {:.6g} in all where only points touched, {}{}; {}",

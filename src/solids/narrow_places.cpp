@@ -22,15 +22,14 @@ class Places {
   /// The widest gap between two spheres that needs smaller elements, over the sum of their radii.
   double widest() const { return 0.5 * per_radius_ / per_gap_; }
 
-  /// The width is g + curvature d², with curvature 1/r. `flat`: the radius within which it is constant.
-  void add(const Vector<3>& point, const Vector<3>& normal, double gap, double curvature, double radius,
-           double flat) {
+  /// The width is g + curvature d², with curvature 1/r.
+  void add(const Vector<3>& point, const Vector<3>& normal, double gap, double curvature, double radius) {
     const double beside = per_radius_ * radius, wide = beside / per_gap_ - gap;
     if (!(wide > 0)) return;
     constexpr double finest = 1. / 30;
     NarrowPlace place{.point = point,
                       .normal = normal,
-                      .reach = 2 * flat + std::sqrt(wide / curvature),
+                      .reach = std::sqrt(wide / curvature),
                       .size = std::max(per_gap_ * gap, finest * beside),
                       .size_beside = beside};
     for (int a = -1; a <= 1; ++a)
@@ -60,20 +59,12 @@ class Places {
 
 void add_between_spheres(const Solids& solids, Places& places) {
   const Spheres<dynamic>& spheres = solids.spheres;
-  const ContactReport& treated = solids.contacts;
   for (const NearBond& near : near_bonds(spheres, solids.domain, places.widest())) {
     const double ri = spheres.r[near.first], rj = spheres.r[near.second];
-    const double smaller = std::min(ri, rj);
     const Vector<3> normal = near.displacement.normalized();
-    double gap = near.gap * (ri + rj), flat = 0;
+    const double gap = near.gap * (ri + rj);
     const Vector<3> point = Vector<3>(spheres.center(near.first)) + (ri + 0.5 * gap) * normal;
-    const bool is_treated = near.gap < treated.gap;
-    if (is_treated && treated.treatment == ContactTreatment::bridge) continue;
-    if (is_treated && treated.treatment == ContactTreatment::cap) {
-      flat = smaller * std::sqrt(2 * (treated.gap - near.gap));
-      gap = treated.gap * (ri + rj);
-    }
-    places.add(point, normal, gap, 0.5 * (1 / ri + 1 / rj), smaller, flat);
+    places.add(point, normal, gap, 0.5 * (1 / ri + 1 / rj), std::min(ri, rj));
   }
 }
 
@@ -81,21 +72,15 @@ void add_at_walls(const Solids& solids, Places& places) {
   if (!has_walls(solids.domain)) return;
   const Frame frame = frame_of(solids.domain);
   const auto container = local_container(solids.domain, nullptr);
-  const bool capped = solids.contacts.treatment == ContactTreatment::cap;
   std::vector<WallPoint> points;
   for (std::size_t i = 0; i < solids.spheres.size(); ++i) {
     const double r = solids.spheres.r[i];
     const Vector<3> c = solids.spheres.center(i);
     points.clear();
     container->walls_near(frame.to_local(c), (1 + 2 * places.widest()) * r / frame.scale, points);
-    for (const WallPoint& point : points) {
-      double gap = std::max(0.0, point.clearance * frame.scale - r), flat = 0;
-      if (capped && gap < solids.contacts.gap * r) {
-        flat = r * std::sqrt(2 * (solids.contacts.gap - gap / r));
-        gap = solids.contacts.gap * r;
-      }
-      places.add(frame.to_scene(point.point), point.inward, gap, 0.5 / r, r, flat);
-    }
+    for (const WallPoint& point : points)
+      places.add(frame.to_scene(point.point), point.inward, std::max(0.0, point.clearance * frame.scale - r),
+                 0.5 / r, r);
   }
 }
 
@@ -111,7 +96,7 @@ void add_at_ends(const Solids& solids, Places& places) {
         const double from_end =
             std::abs(std::abs(solids.spheres.x[static_cast<std::size_t>(k)][i] - end) - r);
         point[k] = end;
-        places.add(point, Vector<3>::Unit(k), from_end, 0.5 / r, r, 0);
+        places.add(point, Vector<3>::Unit(k), from_end, 0.5 / r, r);
       }
     }
 }

@@ -19,7 +19,7 @@ struct NarrowPlace {
 };
 
 /// Narrow places between spheres, at walls and at the ends of periods, with all images that reach into the
-/// domain. At a distance d from a gap of width g between surfaces of radius r the width is g + d²/r; elements
+/// domain. Precondition: neither bridges nor caps. At a distance d from a gap of width g between surfaces of radius r the width is g + d²/r; elements
 /// are `per_gap` times the width, at most `per_radius` times the smaller radius and at least a thirtieth of
 /// that.
 std::vector<NarrowPlace> narrow_places_of(const Solids&, double per_radius, double per_gap);

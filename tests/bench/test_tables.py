@@ -115,5 +115,24 @@ class Arithmetic(Table):
         self.assertEqual(subprocess.run([ARITHMETIC, "many", "1"], capture_output=True).returncode, 2)
 
 
+@unittest.skipUnless(shutil.which("tetgen"), "tetgen is not installed")
+class Meshes(Table):
+    def table_of(self, contact):
+        words = ["--beads", "12", "--beds", "column5", "--contacts", contact, "--regions", "fluid", "-o", self.folder]
+        subprocess.run([HERE / "meshes_table", COMMAND, *words], check=True, stderr=subprocess.DEVNULL)
+        with open(self.folder / "meshes.csv") as file:
+            return list(csv.DictReader(file))
+
+    def test_rows_that_are_there_are_kept(self):
+        (first,) = self.table_of("gap")
+        self.assertEqual((first["beads"], first["in_bed"], first["failure"]), ("12", "12", ""))
+        self.assertGreater(float(first["least_sicn"]), 0)
+        self.assertGreater(int(first["memory_bytes"]), 10**6)
+        self.assertLess(abs(float(first["porosity"]) - float(first["meshed_porosity"])), 0.02)
+        second, kept = self.table_of("bridge")
+        self.assertEqual((second["contact"], kept), ("bridge", first))
+        self.assertEqual((self.folder / "meshes.md").read_text().count("\n| column"), 2)
+
+
 if __name__ == "__main__":
     unittest.main()

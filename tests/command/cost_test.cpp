@@ -44,6 +44,50 @@ TEST(CostCommand, WritesItsFilesAndItsAdviceRuns) {
   EXPECT_FALSE(report["settings"].empty());
 }
 
+// What is expected of a mesh, by explain and by cost, beside what it is.
+TEST(CostCommand, MeshesAreAboutAsExpected) {
+  if (!std::filesystem::exists("/usr/bin/tetgen")) GTEST_SKIP() << "tetgen is not installed";
+  const Folder folder;
+  const std::string scene =
+      folder
+          .write("few.toml",
+                 "unit = \"mm\"\n[container]\nkind = \"cylinder\"\nradius = 1.5\nheight = 3\n[spheres]\n"
+                 "count = 15\ndiameter = 1\n")
+          .string();
+  const std::string out = (folder / "out").string();
+  const Ended ended = bernal({"cost", scene, "-o", out, "--meshes", "--time", "60s", "--json", "--quiet"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const json report = json::parse(ended.out);
+  EXPECT_EQ(report["spheres"], 15);
+  ASSERT_EQ(report["meshes"].size(), 5U);
+  ASSERT_FALSE(report["meshes"][0]["measured"].is_null());
+  double before = 0, error_before = 1;
+  for (const json& mesh : report["meshes"]) {
+    EXPECT_EQ(mesh["neck_size"].get<double>(), mesh["mesh_size"].get<double>() / 2);
+    const json &expected = mesh["expected"], &measured = mesh["measured"];
+    EXPECT_GT(expected["tetrahedra"], before);
+    before = expected["tetrahedra"];
+    if (measured.is_null()) continue;
+    for (const char* what : {"tetrahedra", "memory_bytes"}) {
+      const double ratio = measured[what].get<double>() / expected[what].get<double>();
+      EXPECT_GT(ratio, 0.5) << what << " at " << mesh["mesh_size"];
+      EXPECT_LT(ratio, 2) << what << " at " << mesh["mesh_size"];
+    }
+    const double error = measured["meshed_porosity"].get<double>() - measured["porosity"].get<double>();
+    EXPECT_GT(error, 0);
+    EXPECT_LT(error, 1.1 * error_before);
+    error_before = error;
+    if (mesh["mesh_size"] == 0.3) {
+      const Ended explained = bernal({"explain", scene, "--json"});
+      EXPECT_EQ(json::parse(explained.out)["expected"]["mesh"]["tetrahedra"], expected["tetrahedra"]);
+    }
+  }
+  EXPECT_TRUE(text_of(out + "/meshes.csv").starts_with("sphere_edge,neck_edge,expected_tetrahedra,"));
+  // Its own file it writes again, another one not.
+  folder.write("out/meshes.csv", "mine");
+  expect_refused_in_one_line(bernal({"cost", scene, "-o", out, "--meshes", "--time", "1s"}), {"meshes.csv"});
+}
+
 TEST(CostCommand, RefusesAbsurdInputInOneLine) {
   const Folder folder;
   const std::string scene = folder.write("tiny.toml", tiny_box).string(), out = (folder / "out").string();

@@ -137,7 +137,7 @@ std::string sample_of(const Entry& entry, const Key& key, int choice) {
   if (key.name == "layout") return "\"sc\"";  // which fits into the periods of 9
   for (const OutputTable* format : output_tables())
     if (&format->keys == &entry && key.name == "contact")
-      return format->solids ? "\"bridge\"" : choice == 0 ? "\"gap\"" : "\"shrink\"";
+      return format->has_bridges() ? "\"bridge\"" : choice == 0 ? "\"gap\"" : "\"shrink\"";
   return key.type == Type::file && !entry.columns.empty() ? file_of_columns(entry.name) : sample(key, choice);
 }
 

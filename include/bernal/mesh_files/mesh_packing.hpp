@@ -128,6 +128,9 @@ void require_mesh_format(const MeshFileOptions&, int dimension);
 MeshedPacking mesh_packing(const Packing&, const MeshFileOptions&, const std::filesystem::path& file,
                            const Monitor& monitor = {});
 
+/// What the mesh would be like that `mesh_packing` writes; writes nothing. Throws as that.
+BedMeshReport measure_mesh(const Packing&, const MeshFileOptions&, const Monitor& monitor = {});
+
 /// The report as a JSON object: what `bernal mesh --json` prints.
 std::string mesh_report_as_json(const Packing&, const BedMeshReport&);
 

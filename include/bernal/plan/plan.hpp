@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bernal/measure/measure.hpp"
+#include "bernal/plan/mesh_price.hpp"
 #include "bernal/scene/packing.hpp"
 #include "bernal/sizes/radius_sequence.hpp"
 #include "bernal/sizes/size_distribution.hpp"
@@ -92,6 +93,10 @@ struct PlannedInside {
 /// How many spheres there would be if every sphere held what its packing inside holds, those of all levels
 /// among them: nothing of it is ever made.
 double expected_count_of_all_levels(const Plan&);
+
+/// Of a mesh around the expected spheres, with the defaults of `bernal mesh`; none in other dimensions than
+/// three.
+std::optional<MeshPrice> price_of_mesh(const Plan&);
 
 /// Completes the scene and makes what it names. Throws Error (bad_scene, bad_mesh) where parts do not fit
 /// each other: a sphere larger than the container, a mesh that is no container. Cost: reading the mesh.

@@ -24,10 +24,6 @@ MESH_SIZE, LARGEST_SIZE, MESH_ORDER = @MESH_SIZE@, @LARGEST_SIZE@, @MESH_ORDER@ 
 PIECES = [
 @PIECES@]
 CUT_AT_ENDS = [@CUT_AT_ENDS@]  # volumes
-CAPS = {  # of a volume: cylinders on the planes of the cuts
-@CAPS@}
-BRIDGES = [  # centres of the rims, radius; longer inside of the spheres by the last number
-@BRIDGES@]
 # where gaps are narrow: point, normal, reach, size in the middle and beside, layer
 NARROW = np.array([
 @NARROW@], dtype=float).reshape(-1, 10)
@@ -62,7 +58,7 @@ def domain():
 
 
 def geometry():
-    """Makes the solids; returns the volumes of the matrix, of each type and of bridges."""
+    """Makes the solids; returns the volumes of the matrix and of each type."""
     occ = gmsh.model.occ
     domain()
     volumes = list(range(2, 2 + len(PIECES)))
@@ -70,28 +66,10 @@ def geometry():
         occ.addSphere(x, y, z, r, tag)
         if angle:
             occ.rotate([(3, tag)], x, y, z, ax, ay, az, angle)
-    next_tag = 2 + len(PIECES) + len(BRIDGES)
-    for tag, caps in CAPS.items():
-        tools = []
-        for cap in caps:
-            occ.addCylinder(*cap, next_tag)
-            tools.append((3, next_tag))
-            next_tag += 1
-        made, _ = occ.cut([(3, tag)], tools)
-        expect(made == [(3, tag)], f"a sphere less its caps is one solid: {made}")
-    bridges = []
-    for k, (x, y, z, u, v, w, r, longer) in enumerate(BRIDGES):
-        ends = np.array([[x, y, z], [u, v, w]])
-        along = ends[1] - ends[0]
-        ends += np.array([[-longer], [longer]]) * along / np.linalg.norm(along)
-        bridges.append(occ.addCylinder(*ends[0], *(ends[1] - ends[0]), r, 2 + len(PIECES) + k))
-    if bridges:
-        made, _ = occ.cut([(3, b) for b in bridges], [(3, v) for v in volumes], removeTool=False)
-        expect(sorted(made) == [(3, b) for b in bridges], "every bridge is one solid")
     if CUT_AT_ENDS:
         made, _ = occ.intersect([(3, tag) for tag in CUT_AT_ENDS], [(3, 1)], removeTool=False)
         expect(sorted(made) == [(3, tag) for tag in CUT_AT_ENDS], "every piece is one solid")
-    solids = [(3, tag) for tag in volumes + bridges]
+    solids = [(3, tag) for tag in volumes]
     if solids:
         _, made = occ.fragment([(3, 1)], solids)
     else:
@@ -101,13 +79,8 @@ def geometry():
     for piece, parts in zip(PIECES, made[1:]):
         of_types[NAMES[piece[4] - 1]] += [tag for _, tag in parts]
     inside = {tag for tags in of_types.values() for tag in tags}
-    of_bridges = [tag for parts in made[1 + len(PIECES):] for _, tag in parts]
-    inside |= set(of_bridges)
     expect(len(inside) == len(solids), f"{len(solids)} solids became {len(inside)}")
-    groups = {"matrix": sorted({tag for _, tag in made[0]} - inside), **of_types}
-    if of_bridges:
-        groups["bridges"] = of_bridges
-    return groups
+    return {"matrix": sorted({tag for _, tag in made[0]} - inside), **of_types}
 
 
 def boxes_of(surfaces):

@@ -1,14 +1,35 @@
-#include "writing.hpp"
+#include "results.hpp"
 
 #include <algorithm>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "commands.hpp"
 #include "say.hpp"
 
 using namespace bernal;
+
+void say_if_unpublished(const std::filesystem::path& folder) {
+  if (is_unpublished(folder))
+    say(stderr,
+        "bernal: {}: a run was killed while it put its result there; this is that result, and nothing was "
+        "moved: the next run that writes there puts it into place\n",
+        plain_text(folder.string(), 5000));
+}
+
+Packing read_result(const std::filesystem::path& folder) {
+  Packing packing = read_packing(folder);
+  say_if_unpublished(folder);
+  return packing;
+}
+
+std::optional<tbb::global_control> limited_to(int threads) {
+  if (threads <= 0) return {};
+  return std::optional<tbb::global_control>(std::in_place, tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(threads));
+}
 
 void require_named_file(const std::filesystem::path& file) {
   if (file == "-")

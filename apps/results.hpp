@@ -1,10 +1,24 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-// What commands share that write files, all or none.
+#include <tbb/global_control.h>
+
+#include "bernal/scene/packing.hpp"
+
+// What commands share that read a result, or write files, all or none.
+
+/// Prints a note if the result is read from the place where a killed run left it.
+void say_if_unpublished(const std::filesystem::path& folder);
+
+/// Reads a result, and says where it was left.
+bernal::Packing read_result(const std::filesystem::path& folder);
+
+/// Holds the library to so many threads as long as it lives; 0: to none.
+std::optional<tbb::global_control> limited_to(int threads);
 
 /// Throws Error{bad_argument} for "-": a format may need several files.
 void require_named_file(const std::filesystem::path&);
