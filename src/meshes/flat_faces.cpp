@@ -33,11 +33,11 @@ class FlatFaces {
     // In a layer they follow its thickness, and the distance of the sphere within.
     const Piece& within = draft_.pieces[piece.within].piece;
     const double most = std::min(size, piece.largest_edge);
-    return
-        [=, center = within.center, r = within.radius, per_gap = draft_.options.per_gap](const Vector<3>& q) {
-          const double from = (q - center).norm() - r;
-          return from > 0 ? std::max(std::min(most, per_gap * from), 1e-3 * most) : size;
-        };
+    return [=, center = within.center, r = within.radius,
+            per_gap = draft_.per_gap_of_layers()](const Vector<3>& q) {
+      const double from = (q - center).norm() - r;
+      return from > 0 ? std::max(std::min(most, per_gap * from), 1e-3 * most) : size;
+    };
   }
   /// The circle at the same end of the piece within, if it has one.
   const Circle* circle_within(const DraftPiece& piece, const Circle& circle) const {

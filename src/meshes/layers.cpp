@@ -17,7 +17,7 @@ constexpr double thin = 0.8;
 constexpr double highest_prism = 4;
 /// A plane that cuts a sphere, and lines and points in which several do, lie within this share of the radius
 /// of the sphere within, or beyond the sphere around: else what is cut of both is not alike.
-constexpr double well_within = 0.97;
+constexpr double well_within = 0.87;
 /// What a neck or cap leaves of a layer at least, of its thickness.
 constexpr double least_left = 0.2;
 

@@ -112,6 +112,8 @@ struct SurfaceDraft {
   std::int32_t region_of_piece(std::uint32_t piece) const {
     return options.solids ? static_cast<std::int32_t>(1 + piece) : SurfacePatch::nothing;
   }
+  /// As `per_gap`, between spheres in which layers begin and ends that pass by: both sides are fixed there.
+  double per_gap_of_layers() const { return std::min(options.per_gap, 2.0); }
   /// The length of edges on a piece at a point, in the scene.
   double size_on(const DraftPiece& of, const Vector<3>& p, bool is_cut_at_end,
                  const std::vector<NearBall>& near) const {
@@ -119,7 +121,8 @@ struct SurfaceDraft {
     if (of.is_outer())
       return std::min(of.largest_edge, sizes.on_sphere(p, of.piece.center, r, is_cut_at_end, near));
     const double size = std::min(of.largest_edge, options.sphere_edge * r);
-    return is_cut_at_end ? size : std::max(std::min(size, options.per_gap * sizes.from_ends(p)), 1e-4 * r);
+    return is_cut_at_end ? size
+                         : std::max(std::min(size, per_gap_of_layers() * sizes.from_ends(p)), 1e-4 * r);
   }
   std::int32_t region_of_neck(std::uint32_t neck) const {
     return options.solids ? static_cast<std::int32_t>(1 + pieces.size() + neck) : SurfacePatch::nothing;

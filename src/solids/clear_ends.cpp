@@ -121,13 +121,12 @@ Ends best_of(const std::array<std::vector<Place>, 3>& places, const Spheres<dyna
 }  // namespace
 
 ClearEnds with_clear_ends(const Spheres<dynamic>& spheres, const Domain& domain,
-                          const std::vector<Bridge>& bridges, std::size_t most_places) {
+                          const std::vector<Bridge>& bridges) {
   const Boundary<3> boundary = boundary_of<3>(domain);
   if (!boundary.repeats() || spheres.empty()) return {domain, unlimited};
   // Limits the places so that the work for edges is some million distances.
   const auto n = static_cast<double>(spheres.size());
-  const auto most = static_cast<std::size_t>(std::clamp(
-      std::sqrt(1e7 / n) * static_cast<double>(most_places) / 40, 4.0, static_cast<double>(most_places)));
+  const auto most = static_cast<std::size_t>(std::clamp(std::sqrt(1e7 / n), 4.0, 40.0));
   std::array<std::vector<Place>, 3> places;
   for (int k = 0; k < 3; ++k)
     places[static_cast<std::size_t>(k)] =

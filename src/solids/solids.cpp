@@ -254,9 +254,6 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
   return bridges;
 }
 
-/// Layers are crowded at their spheres' surfaces: more places are tried for ends that stay clear of them.
-constexpr std::size_t places_for_layers = 160;
-
 /// Shells of spheres that have other radii now.
 Shells scaled(Shells shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after) {
   if (shells.first.empty()) return shells;
@@ -295,10 +292,7 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
     bridges = bridges_of(made.spheres, domain, bonds, options.bridge_radius, unused);
   }
   made.shells = scaled(options.shells, spheres, made.spheres);
-  const Spheres<dynamic> with_layers = with_shells(made.spheres, made.shells);
-  const ClearEnds ends = made.shells.radius.empty()
-                             ? with_clear_ends(with_layers, domain, bridges)
-                             : with_clear_ends(with_layers, domain, bridges, places_for_layers);
+  const ClearEnds ends = with_clear_ends(with_shells(made.spheres, made.shells), domain, bridges);
   made.end_distance = ends.distance;
   made.domain = ends.domain;
   wrap(made.spheres, made.domain);

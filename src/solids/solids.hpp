@@ -73,8 +73,7 @@ struct ClearEnds {
   Domain domain;
   double distance;  ///< least, over the radius; infinite without periods
 };
-ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&, const std::vector<Bridge>& bridges = {},
-                          std::size_t most = 40);
+ClearEnds with_clear_ends(const Spheres<dynamic>&, const Domain&, const std::vector<Bridge>& bridges = {});
 
 /// Volume of a spherical cap, π h² (3 r - h) / 3.
 double cap_volume(double radius, double height);
