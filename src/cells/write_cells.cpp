@@ -110,8 +110,6 @@ WrittenCells write_cells(const Packing& packing, const CellFileOptions& options,
   require_cell_format(options, packing.spheres.dimension());
   const CellWriter& writer = writer_of(options.format);
   const fs::path name = named.filename(), folder = folder_of(named);
-  if (name.empty() || name == "." || name == "..")
-    throw Error(ErrorCode::cannot_write, "is a folder; give the name of a file in it", {named.string()});
   std::vector<std::string> names{name.string()};
   for (const std::string_view ending : writer.endings) {
     names.push_back(beside(name, ending));

@@ -44,6 +44,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.least_triangle_angle = stated.least_angle;
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
+  report.widened_necks = stated.widened_necks;
   report.porosity = stated.fluid_volume / report.domain_volume;
   report.contact_area = stated.contact_area;
 }
@@ -170,8 +171,6 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   require_mesh_format(options, packing.spheres.dimension());
   const MeshWriter& writer = mesh_writer_of(options.format);
   const fs::path name = named.filename(), folder = folder_of(named);
-  if (name.empty() || name == "." || name == "..")
-    throw Error(ErrorCode::cannot_write, "is a folder; give the name of a file in it", {named.string()});
   require_free(folder, names_of_files(writer, name));
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;

@@ -11,49 +11,7 @@
 namespace bernal {
 namespace {
 
-constexpr std::uint32_t none = 0xFFFFFFFF;
-
-FaceCorners face_of(const VolumeMesh& mesh, std::size_t t, std::size_t k) {
-  FaceCorners corners{};
-  for (std::size_t i = 0; i < 3; ++i)
-    corners[i] = mesh.tetrahedra[t][static_cast<std::size_t>(faces_of_tetrahedron[k][i])];
-  return corners;
-}
-
-/// Of every tetrahedron the one behind each of its faces.
-std::vector<std::array<std::uint32_t, 4>> neighbours_of(const VolumeMesh& mesh) {
-  // Faces by their least corner: those of vertex v stand from first[v] to first[v + 1].
-  const std::size_t cells = mesh.tetrahedra.size();
-  const auto least = [](const FaceCorners& c) { return std::min({c[0], c[1], c[2]}); };
-  std::vector<std::size_t> first(mesh.vertices.size() + 1, 0);
-  for (std::size_t t = 0; t < cells; ++t)
-    for (std::size_t k = 0; k < 4; ++k) ++first[least(face_of(mesh, t, k)) + 1];
-  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
-  std::vector<std::size_t> next(first.begin(), first.end() - 1), sorted(4 * cells);
-  for (std::size_t t = 0; t < cells; ++t)
-    for (std::size_t k = 0; k < 4; ++k) sorted[next[least(face_of(mesh, t, k))]++] = 4 * t + k;
-  std::vector<std::array<std::uint32_t, 4>> behind(cells, {none, none, none, none});
-  struct Entry {
-    std::array<std::uint32_t, 2> others;
-    std::size_t face;
-  };
-  std::vector<Entry> at;
-  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
-    at.clear();
-    for (std::size_t i = first[v]; i < first[v + 1]; ++i) {
-      FaceCorners corners = face_of(mesh, sorted[i] / 4, sorted[i] % 4);
-      std::ranges::sort(corners);
-      at.push_back({{corners[1], corners[2]}, sorted[i]});
-    }
-    std::ranges::sort(at, {}, [](const Entry& e) { return std::pair(e.others, e.face); });
-    for (std::size_t i = 1; i < at.size(); ++i) {
-      if (at[i].others != at[i - 1].others) continue;
-      behind[at[i].face / 4][at[i].face % 4] = static_cast<std::uint32_t>(at[i - 1].face / 4);
-      behind[at[i - 1].face / 4][at[i - 1].face % 4] = static_cast<std::uint32_t>(at[i].face / 4);
-    }
-  }
-  return behind;
-}
+constexpr std::uint32_t none = TriangleSide::none;
 
 void add_inner_faces(const VolumeMesh& mesh, PolyMesh& poly) {
   const auto behind = neighbours_of(mesh);

@@ -23,7 +23,7 @@ std::vector<Arc> arcs_on(const DraftPiece& piece, std::size_t c) {
   };
   std::vector<Gone> gone;
   for (std::size_t j = 0; j < circles.size(); ++j) {
-    if (j == c || circles[j].kind == Circle::Kind::neck) continue;
+    if (j == c) continue;
     const double a = circles[j].normal.dot(u), b = circles[j].normal.dot(v), m = std::hypot(a, b);
     const double level = circles[j].depth - circle.depth * circles[j].normal.dot(circle.normal);
     if (level <= -circle.radius * m) return {};

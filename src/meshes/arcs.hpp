@@ -18,7 +18,7 @@ struct Arc {
   double from, to;
   std::array<std::size_t, 2> ended_by;
 };
-/// The parts of a circle of a piece outside of its others, necks' left out.
+/// The parts of a circle of a piece outside of its others.
 std::vector<Arc> arcs_on(const DraftPiece&, std::size_t circle);
 
 /// The points of an arc of one piece as they are on the arc of another about the same centre that ends at the

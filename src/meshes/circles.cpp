@@ -15,8 +15,6 @@ using std::numbers::pi;
 class Circles {
  public:
   explicit Circles(SurfaceDraft& draft) : draft_(draft) {
-    for (std::uint32_t p = 0; p < draft.pieces.size(); ++p)
-      numbers_[{draft.pieces[p].piece.sphere, draft.pieces[p].piece.image, draft.pieces[p].layer}] = p;
     near_.resize(draft.pieces.size());
     has_near_.resize(draft.pieces.size(), 0);
   }
@@ -34,8 +32,7 @@ class Circles {
         piece.circles.push_back(circle);
       }
     for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
-      for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c)
-        if (draft_.pieces[p].circles[c].kind != Circle::Kind::neck) fill(p, c);
+      for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c) fill(p, c);
     for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
       for (std::size_t a = 0; a < draft_.pieces[p].circles.size(); ++a)
         for (std::size_t b = 0; b < a; ++b)
@@ -49,8 +46,7 @@ class Circles {
   std::uint32_t piece_before(std::uint32_t p, int axis) const {
     auto image = draft_.pieces[p].piece.image;
     --image[static_cast<std::size_t>(axis)];
-    const auto found = numbers_.find({draft_.pieces[p].piece.sphere, image, draft_.pieces[p].layer});
-    return found == numbers_.end() ? Delaunay::none : found->second;
+    return draft_.piece_at(draft_.pieces[p].piece.sphere, image, draft_.pieces[p].below);
   }
 
   static std::uint32_t known(std::uint32_t piece) {
@@ -104,7 +100,7 @@ class Circles {
         const Circle& wanted = draft_.pieces[p].circles[of];
         if (wanted.kind == Circle::Kind::end)
           return circle_at(lower, of == c ? wanted.face - 1 : wanted.face);
-        return contact_like(lower, wanted);
+        return same_as(lower, wanted);
       };
       const Vector<3> moved = at - draft_.boundary.edges[axis] * Vector<3>::Unit(axis);
       return draft_.lifted(axis, corner(lower, same(a), same(b), moved));
@@ -126,7 +122,7 @@ class Circles {
     const Circle& wanted = draft_.pieces[p].circles[of];
     if (wanted.kind == Circle::Kind::end)
       return circle_at(lower, wanted.face == face ? face - 1 : wanted.face);
-    return contact_like(lower, wanted);
+    return same_as(lower, wanted);
   }
 
   /// An upper end among circles of a piece, or none.
@@ -175,13 +171,19 @@ class Circles {
         depths[k] = circle.depth;
       }
       const Vector<3> q = draft_.pieces[p].piece.center + normals.inverse() * depths;
-      entry->second = add(p, of, q, chord_size(p));
+      entry->second = add(p, of, q, chord_size(p, of));
     }
     return entry->second;
   }
 
-  double chord_size(std::uint32_t p) const {
-    return draft_.options.sphere_edge * draft_.pieces[p].piece.radius;
+  double chord_size(std::uint32_t p, std::span<const std::size_t> circles) const {
+    double size = draft_.options.sphere_edge * draft_.pieces[p].piece.radius;
+    for (const std::size_t c : circles)
+      if (const Circle& circle = draft_.pieces[p].circles[c]; circle.kind == Circle::Kind::neck) {
+        const DraftNeck& neck = draft_.necks[circle.neck];
+        size = std::min({size, neck.edge, 2 * (neck.end - neck.begin)});
+      }
+    return size;
   }
 
   using Chains = std::vector<std::vector<std::uint32_t>>;
@@ -192,18 +194,10 @@ class Circles {
     const std::array<std::size_t, 2> both = {a, b};
     const auto& circles = draft_.pieces[p].circles;
     const Circle &one = circles[a], &other = circles[b];
-    if (one.kind == Circle::Kind::neck || other.kind == Circle::Kind::neck) return {};
-    if (!draft_.options.solids && one.kind == Circle::Kind::end && other.kind == Circle::Kind::end) return {};
+    if (!draft_.options.solids && one.kind != Circle::Kind::contact && other.kind != Circle::Kind::contact)
+      return {};
     const double c = one.normal.dot(other.normal), sine2 = 1 - c * c;
     if (sine2 < 1e-12) return {};
-    if (const int face = upper_among(p, both); face >= 0) {
-      const std::uint32_t lower = piece_before(p, face / 2);
-      if (lower == Delaunay::none) return {};
-      Chains made = chords_of(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face));
-      for (auto& ids : made)
-        for (std::uint32_t& id : ids) id = draft_.lifted(face / 2, id);
-      return made;
-    }
     if (a > b) return chords_of(p, b, a);
     if (const auto found = chords_.find({p, a, b}); found != chords_.end()) return found->second;
     const Piece& piece = draft_.pieces[p].piece;
@@ -215,7 +209,7 @@ class Circles {
     std::array<double, 2> ends = {-std::sqrt(squared), std::sqrt(squared)};
     std::array<std::size_t, 2> by = {a, a};
     for (std::size_t k = 0; k < circles.size(); ++k) {
-      if (k == a || k == b || circles[k].kind == Circle::Kind::neck) continue;
+      if (k == a || k == b) continue;
       const double rise = circles[k].normal.dot(along), left = circles[k].depth - circles[k].normal.dot(foot);
       if (rise > 0 && left / rise < ends[1]) {
         ends[1] = left / rise;
@@ -228,6 +222,14 @@ class Circles {
       }
     }
     if (!(ends[0] < ends[1])) return {};
+    if (const int face = upper_among(p, both); face >= 0) {
+      const std::uint32_t lower = piece_before(p, face / 2);
+      if (lower == Delaunay::none) return {};
+      Chains made = chords_of(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face));
+      for (auto& ids : made)
+        for (std::uint32_t& id : ids) id = draft_.lifted(face / 2, id);
+      return made;
+    }
     const auto at = [&](double t) { return Vector<3>(piece.center + foot + t * along); };
     const auto end = [&](std::size_t e) {
       return by[e] == a ? corner(p, a, b, at(ends[e])) : triple(p, {a, b, by[e]});
@@ -247,8 +249,8 @@ class Circles {
     } else {
       parts.push_back({End{ends[0], end(0)}, End{ends[1], end(1)}});
     }
-    const double size =
-        within == DraftPiece::none ? chord_size(p) : std::min(chord_size(p), draft_.pieces[p].largest_edge);
+    double size = chord_size(p, both);
+    if (within != DraftPiece::none) size = std::min(size, draft_.pieces[p].largest_edge);
     const bool has_prisms = within != DraftPiece::none && draft_.pieces[within].is_copied;
     Chains made;
     for (const auto& [from, to] : parts) {
@@ -268,10 +270,10 @@ class Circles {
     return std::sqrt(std::max(0.0, r * r - squared));
   }
 
-  std::size_t contact_like(std::uint32_t p, const Circle& wanted) const {
+  std::size_t same_as(std::uint32_t p, const Circle& wanted) const {
     const auto& circles = draft_.pieces[p].circles;
     for (std::size_t c = 0; c < circles.size(); ++c)
-      if (circles[c].kind == Circle::Kind::contact && circles[c].normal == wanted.normal) return c;
+      if (circles[c].kind == wanted.kind && circles[c].normal == wanted.normal) return c;
     fail();
   }
 
@@ -341,19 +343,33 @@ class Circles {
 
   /// Angles of points along an arc, without its ends, as many as the sizes there ask for.
   std::vector<double> angles_of(std::uint32_t p, const Circle& circle, const Arc& arc, const auto& at) {
-    constexpr double least_per_turn = 8;
     const double turn = arc.to - arc.from;
     std::vector<double> angles;
     if (circle.is_whole) angles.push_back(arc.from);
     for (const double share : spaced(turn * circle.radius, circle.is_whole ? 8 : 2, [&](double t) {
-           return std::min(size_at(p, at(arc.from + t * turn)), 2 * pi / least_per_turn * circle.radius);
+           return circle.kind == Circle::Kind::neck ? circle.edge
+                                                    : size_along(p, circle, at(arc.from + t * turn));
          }))
       angles.push_back(arc.from + share * turn);
     return angles;
   }
 
+  /// Edges on an end's or a cap's circle. Where it begins at a neck, they begin with that neck's height.
+  double size_along(std::uint32_t p, const Circle& circle, const Vector<3>& q) {
+    constexpr double least_per_turn = 8, growth = 0.6;
+    double size = std::min(size_at(p, q), 2 * pi / least_per_turn * circle.radius);
+    const Vector<3> from = q - draft_.pieces[p].piece.center;
+    for (const Circle& other : draft_.pieces[p].circles) {
+      if (other.kind != Circle::Kind::neck || !draft_.necks[other.neck].is_cut) continue;
+      const double along = from.dot(other.normal);
+      const double beside = (from - along * other.normal).norm() - other.radius;
+      const double height = draft_.necks[other.neck].end - draft_.necks[other.neck].begin;
+      size = std::min(size, height + growth * std::hypot(along - other.depth, beside));
+    }
+    return size;
+  }
+
   SurfaceDraft& draft_;
-  std::map<std::tuple<std::uint32_t, std::array<int, 3>, std::uint32_t>, std::uint32_t> numbers_;
   std::map<std::tuple<std::uint32_t, std::size_t, std::size_t, int>, std::uint32_t> corners_;
   std::map<std::array<std::size_t, 4>, std::uint32_t> triples_;
   std::map<std::tuple<std::uint32_t, std::size_t, std::size_t>, Chains> chords_;

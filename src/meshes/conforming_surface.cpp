@@ -61,10 +61,10 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
         fmt::format("meshes are made in boxes, cylinders and spheres of three dimensions, not in a {}",
                     name_of(solids.domain)));
   SurfaceDraft draft(solids, options);
-  for (const Piece& piece : solids.pieces) draft.pieces.push_back({piece, {}});
   add_necks(draft);
   if (options.solids) add_shells(draft);
   add_circles(draft);
+  add_neck_traces(draft);
   mesh_necks(draft);
   mesh_pieces(draft, monitor);
   mesh_flat_faces(draft);

@@ -17,7 +17,7 @@ namespace bernal {
 struct SurfacePatch {
   enum class Kind {
     sphere,    ///< index: the sphere's in the packing
-    neck,      ///< index: its place in `ConformingSurface::necks`
+    neck,      ///< index: its place in `ConformingSurface::necks`, the same for images
     cut_face,  ///< the flat face of a cap, or where a neck begins inside a sphere; index: the sphere's
     wall,  ///< index: 0 to 5 of a box as Cut::face; of a cylinder 0 its side, 1 its floor, 2 its lid; 0 of a
            ///< sphere
@@ -63,8 +63,10 @@ struct SurfaceStatement {
   double least_edge = 0, least_angle = 0;  ///< of all triangles; the angle in degrees
   double least_angle_off_necks = 0;        ///< of all triangles that do not lie on necks, in degrees
   Vector<3> place_of_least_angle = Vector<3>::Zero();
-  std::size_t shrunk_necks = 0;  ///< whose radius is smaller than asked for, so that others stay clear
-  double largest_shrink = 0;     ///< over the radius asked for
+  std::size_t shrunk_necks =
+      0;  ///< whose radius is smaller than asked for, so that others and ends of periods stay clear
+  double largest_shrink = 0;      ///< over the radius asked for
+  std::size_t widened_necks = 0;  ///< by up to a fifth, so that ends of periods cut them clearly
   double fluid_volume = 0;  ///< in closed form; where caps of a sphere meet, what they share is counted twice
   double meshed_fluid_volume = 0;  ///< between the triangles
   double contact_area = 0;         ///< cross-sections of necks, flat faces of caps

@@ -10,11 +10,14 @@ struct TetrahedraOptions {
   double radius_over_edge = 1.2;  ///< of the sphere through the corners over the shortest edge, at most
   double least_angle = 14;        ///< between faces of tetrahedra away from the surface, in degrees
   double goal = 0.2;              ///< of the SICN, see `improve`
+  /// Of a surface that is filled at once; larger ones are filled in sections, see `fill_in_sections`.
+  std::size_t most_triangles = 1'000'000;
 };
 
 struct FillReport {
-  double seconds = 0;     ///< in the mesher, with its files written and read
-  double peak_bytes = 0;  ///< of the mesher
+  double seconds = 0;        ///< in the mesher, with its files written and read
+  double peak_bytes = 0;     ///< of the mesher, of as many as run at once
+  std::size_t sections = 1;  ///< 1: filled at once, also where sections failed
   double seconds_improving = 0;
   ImproveReport improvements;
   double volume_error = 0;  ///< of a region against that between its triangles, over the volume; the largest
@@ -28,9 +31,5 @@ struct FillReport {
 /// or what it leaves is not such a mesh, Error{cannot_write} where its files cannot be written, Cancelled.
 /// Cost: about 30 µs and 1 kB a tetrahedron.
 VolumeMesh fill(const ConformingSurface&, const TetrahedraOptions&, FillReport&, const Monitor& monitor = {});
-
-/// Points behind or in front of triangles where no mesh is made, one for each part of the surface that hangs
-/// together and has such a side inside of the domain.
-std::vector<Vector<3>> points_of_holes(const ConformingSurface&);
 
 }  // namespace bernal

@@ -19,9 +19,13 @@ class FlatFaces {
             continue;
           if (circle.kind == Circle::Kind::contact || draft_.options.solids) make_face(p, c);
         }
-    if (draft_.options.solids)
+    if (!draft_.options.solids) return;
+    for (std::uint32_t n = 0; n < draft_.necks.size(); ++n)
+      if (draft_.necks[n].wall) make_foot(n);
+    for (const bool upper : {false, true})
       for (std::uint32_t n = 0; n < draft_.necks.size(); ++n)
-        if (draft_.necks[n].wall) make_foot(n);
+        for (int axis = 0; axis < 3; ++axis)
+          if (draft_.necks[n].is_cut && draft_.boundary.repeats(axis)) make_end(n, axis, upper);
   }
 
  private:
@@ -49,9 +53,13 @@ class FlatFaces {
   }
 
   PlanarPart part_of(const Circle& circle, const Vector<3>& center) {
-    const Vector<3> u = circle.normal.unitOrthogonal(), v = circle.normal.cross(u);
-    const Vector<3> origin = center + circle.depth * circle.normal;
-    const int axis = circle.kind == Circle::Kind::end ? circle.face / 2 : -1;
+    return part_in(circle.normal, center + circle.depth * circle.normal,
+                   circle.kind == Circle::Kind::end ? circle.face / 2 : -1);
+  }
+
+  /// In the plane through a point; `axis`: whose lower end it is, or -1.
+  PlanarPart part_in(const Vector<3>& normal, const Vector<3>& origin, int axis) {
+    const Vector<3> u = normal.unitOrthogonal(), v = normal.cross(u);
     const double at = axis < 0 ? 0 : draft_.boundary.origin[axis];
     return {draft_,
             [=](const Vector<3>& p) { return Vector<3>((p - origin).dot(u), (p - origin).dot(v), 0); },
@@ -98,8 +106,7 @@ class FlatFaces {
   /// Where a neck stands on a wall.
   void make_foot(std::uint32_t n) {
     const DraftNeck neck = draft_.necks[n];
-    const Vector<3> center = draft_.pieces[neck.pieces[0]].piece.center,
-                    around = neck.axis.cross(neck.across);
+    const Vector<3> center = neck.center, around = neck.around();
     PlanarPart part(
         draft_,
         [&](const Vector<3>& p) {
@@ -114,7 +121,78 @@ class FlatFaces {
               false, size_in(neck.pieces[0]));
   }
 
+  /// Where an end of a period cuts a neck.
+  void make_end(std::uint32_t n, int axis, bool upper) {
+    const DraftNeck neck = draft_.necks[n];
+    const int face = 2 * axis + upper;
+    if (std::ranges::none_of(neck.traces, [&](const NeckTrace& trace) { return trace.face == face; })) return;
+    const std::uint32_t number = draft_.add_patch({SurfacePatch::Kind::period_end,
+                                                   static_cast<std::uint32_t>(face),
+                                                   {draft_.region_of_neck(n), SurfacePatch::nothing}});
+    if (upper) {
+      std::array<int, 3> image = neck.image;
+      --image[static_cast<std::size_t>(axis)];
+      for (const FaceCorners& t : lower_of_necks_.at({neck.bond, image, axis}))
+        draft_.add_triangle(number, draft_.lifted(axis, t[0]), draft_.lifted(axis, t[2]),
+                            draft_.lifted(axis, t[1]));
+      return;
+    }
+    Vector<3> origin = neck.center;
+    origin[axis] = draft_.boundary.origin[axis];
+    PlanarPart part = part_in(-Vector<3>::Unit(axis), origin, axis);
+    std::vector<std::uint32_t> ends;  // of what bounds it so far
+    const auto add = [&](const std::vector<std::uint32_t>& chain, bool is_closed) {
+      part.add_chain(chain, is_closed);
+      if (!is_closed) ends.insert(ends.end(), {chain.front(), chain.back()});
+    };
+    for (const NeckTrace& trace : neck.traces)
+      if (trace.face == face) add(trace.ids, trace.is_closed);
+    for (std::size_t e = 0; e < 2; ++e) {
+      if (neck.pieces[e] == Delaunay::none) continue;
+      const DraftPiece& piece = draft_.pieces[neck.pieces[e]];
+      for (const Chord& chord : piece.chords)
+        for (const std::size_t side : {0, 1})
+          if (const Circle& other = piece.circles[chord.circles[1 - side]];
+              chord.circles[side] == neck.circles[e] && other.kind == Circle::Kind::end && other.face == face)
+            add(chord.ids, false);
+    }
+    const double size = draft_.options.sphere_edge * draft_.solids.spheres.r[neck.spheres[0]];
+    for (int other = 0; other < 3; ++other)
+      if (other != axis && draft_.boundary.repeats(other))
+        for (const bool at_upper : {false, true})
+          if (const auto line = line_of(ends, other, at_upper, 3 - axis - other, size); !line.empty())
+            part.add_chain(line, false);
+    part.mesh(number, false, [size](const Vector<3>&) { return size; });
+    lower_of_necks_[{neck.bond, neck.image, axis}] = part.triangles();
+  }
+
+  /// The part of an edge of the box in a neck, along an axis, between those of some vertices that are on it;
+  /// empty if there are none.
+  std::vector<std::uint32_t> line_of(const std::vector<std::uint32_t>& ends, int axis, bool upper, int along,
+                                     double size) {
+    const double at = draft_.boundary.origin[axis] + (upper ? draft_.boundary.edges[axis] : 0);
+    std::vector<std::uint32_t> on;
+    for (const std::uint32_t id : ends)
+      if (draft_.made.vertices[id][axis] == at) on.push_back(id);
+    std::ranges::sort(on, {}, [&](std::uint32_t id) { return draft_.made.vertices[id][along]; });
+    on.erase(std::unique(on.begin(), on.end()), on.end());
+    if (on.size() < 2) return {};
+    const Vector<3> from = draft_.made.vertices[on.front()], to = draft_.made.vertices[on.back()];
+    const int count = std::max(1, static_cast<int>(std::ceil((to[along] - from[along]) / size)));
+    std::vector<std::uint32_t> line = {on.front()};
+    for (int k = 1; k < count; ++k) {
+      Vector<3> p = from;
+      p[axis] = draft_.boundary.origin[axis];
+      p[along] += (to[along] - from[along]) * k / count;
+      const std::uint32_t lower = draft_.vertex_at(p, size);
+      line.push_back(upper ? draft_.lifted(axis, lower) : lower);
+    }
+    line.push_back(on.back());
+    return line;
+  }
+
   SurfaceDraft& draft_;
+  std::map<std::tuple<std::uint32_t, std::array<int, 3>, int>, std::vector<FaceCorners>> lower_of_necks_;
   std::map<std::tuple<std::uint32_t, std::array<int, 3>, int, std::uint32_t>, std::vector<FaceCorners>>
       lower_;
 };

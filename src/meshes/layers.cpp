@@ -36,17 +36,15 @@ class ShellsOfPieces {
       look_at(draft_.pieces[p], radii, plans.try_emplace(sphere, radii.size()).first->second);
     }
     for (auto& [sphere, plan] : plans) limit_edges(sphere, plan);
-    std::map<std::pair<std::uint32_t, std::array<int, 3>>, std::uint32_t> around;
     for (std::uint32_t p = 0; p < outer; ++p) {
       DraftPiece& piece = draft_.pieces[p];
       const std::size_t count = shells_.of(piece.piece.sphere).size();
       if (count == 0) continue;
       piece.layer = static_cast<std::uint32_t>(count);
       piece.largest_edge = plans.at(piece.piece.sphere).edge.back();
-      around[{piece.piece.sphere, piece.piece.image}] = p;
     }
-    for (std::size_t level = 0;; ++level)
-      if (!add_level(level, plans, around)) return;
+    for (std::uint32_t below = 1;; ++below)
+      if (!add_level(below, plans)) return;
   }
 
  private:
@@ -82,6 +80,8 @@ class ShellsOfPieces {
 
   /// Where ends of periods cut the spheres of a layer in other ways, no prisms fit between.
   void look_at(const DraftPiece& piece, std::span<const double> radii, Plan& plan) const {
+    for (const Circle& circle : piece.circles)
+      if (circle.kind == Circle::Kind::neck && draft_.necks[circle.neck].is_cut) plan.is_copied.back() = 0;
     std::vector<double> squares = {0};  // of distances of planes, lines and corners from the centre
     for (const Cut& cut : piece.piece.cuts) {
       if (cut.face == Cut::contact) continue;
@@ -123,31 +123,27 @@ class ShellsOfPieces {
   }
 
   /// Adds the spheres that are so many layers below the surface; false if there are none.
-  bool add_level(std::size_t below, const std::map<std::uint32_t, Plan>& plans,
-                 std::map<std::pair<std::uint32_t, std::array<int, 3>>, std::uint32_t>& around) {
+  bool add_level(std::uint32_t below, const std::map<std::uint32_t, Plan>& plans) {
     Spheres<dynamic> balls(3);
     std::vector<std::uint32_t> number;
     for (const auto& [sphere, plan] : plans) {
       const std::span<const double> radii = shells_.of(sphere);
-      if (below >= radii.size()) continue;
-      balls.push_back(draft_.solids.spheres.center(sphere), radii[radii.size() - 1 - below]);
+      if (below > radii.size()) continue;
+      balls.push_back(draft_.solids.spheres.center(sphere), radii[radii.size() - below]);
       number.push_back(sphere);
     }
     if (number.empty()) return false;
     for (Piece& piece : pieces_of(balls, draft_.solids.domain)) {
       piece.sphere = number[piece.sphere];
-      const auto p = static_cast<std::uint32_t>(draft_.pieces.size());
       const Plan& plan = plans.at(piece.sphere);
-      const std::size_t level = plan.is_copied.size() - 1 - below;
-      std::uint32_t& next = around.at({piece.sphere, piece.image});
       DraftPiece made{.piece = std::move(piece)};
-      made.layer = static_cast<std::uint32_t>(level);
-      made.around = next;
-      made.is_copied = plan.is_copied[level];
-      made.largest_edge = plan.edge[level];
-      draft_.pieces[next].within = p;
-      next = p;
-      draft_.pieces.push_back(std::move(made));
+      made.layer = static_cast<std::uint32_t>(plan.is_copied.size() - below);
+      made.below = below;
+      made.around = draft_.piece_at(made.piece.sphere, made.piece.image, below - 1);
+      made.is_copied = plan.is_copied[made.layer];
+      made.largest_edge = plan.edge[made.layer];
+      draft_.pieces[made.around].within = static_cast<std::uint32_t>(draft_.pieces.size());
+      draft_.add_piece(std::move(made));
     }
     return true;
   }

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
-#include "meshes/surface_draft.hpp"
+#include "meshes/planar_part.hpp"
 
 namespace bernal {
 namespace {
@@ -141,41 +141,77 @@ void mesh_pieces(SurfaceDraft& draft, const Monitor& monitor) {
   }
 }
 
+namespace {
+
+/// Triangles between two whole circles, row by row.
+void mesh_whole_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t patch) {
+  const std::size_t count = neck.count;
+  std::vector<std::uint32_t> before = neck.rims[0];
+  for (std::size_t row = 1; row <= neck.rows; ++row) {
+    std::vector<std::uint32_t> next = neck.rims[1];
+    if (row < neck.rows)
+      for (std::size_t k = 0; k < count; ++k) {
+        // Along the line of the neck's side that is half an edge on in each row.
+        const double share = static_cast<double>(row) / static_cast<double>(neck.rows);
+        const double half = std::numbers::pi / static_cast<double>(count);
+        const double t = 2 * half * static_cast<double>(k) + half * static_cast<double>(row);
+        const Vector<3> beside = neck.radius * (std::cos(t) * neck.across + std::sin(t) * neck.around());
+        const double lower = (draft.made.vertices[neck.rims[0][0]] - neck.center).dot(neck.axis);
+        const double upper = (draft.made.vertices[neck.rims[1][0]] - neck.center).dot(neck.axis);
+        next[k] = draft.add_vertex(neck.center + beside + (lower + share * (upper - lower)) * neck.axis,
+                                   draft.made.size[neck.rims[0][0]]);
+      }
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t l = (k + 1) % count;
+      draft.add_triangle(patch, before[k], before[l], next[k]);
+      draft.add_triangle(patch, before[l], next[l], next[k]);
+    }
+    before = next;
+  }
+}
+
+/// Triangles of what is left of a neck's side in the domain. It is mapped to the plane by angle and the
+/// exponential of the height, which keeps angles.
+void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t patch) {
+  const double a = neck.radius, middle = 0.5 * (neck.begin + neck.end);
+  const Vector<3> around = neck.around();
+  PlanarPart part(
+      draft,
+      [&](const Vector<3>& p) {
+        const Vector<3> d = p - neck.center, beside = d - d.dot(neck.axis) * neck.axis;
+        const double r = a * std::exp((d.dot(neck.axis) - middle) / a) / beside.norm();
+        return Vector<3>(r * beside.dot(neck.across), r * beside.dot(around), 0);
+      },
+      [&](const Vector<3>& p) {
+        const double r = p.norm();
+        return Vector<3>(neck.center + (middle + a * std::log(r / a)) * neck.axis +
+                         a / r * (p[0] * neck.across + p[1] * around));
+      });
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (neck.pieces[e] == Delaunay::none) continue;
+    const Circle& circle = draft.pieces[neck.pieces[e]].circles[neck.circles[e]];
+    for (const auto& chain : circle.chains) part.add_chain(chain, circle.is_whole);
+  }
+  for (const NeckTrace& trace : neck.traces) part.add_chain(trace.ids, trace.is_closed);
+  if (!part.empty()) part.mesh(patch, true, [&](const Vector<3>&) { return neck.edge; });
+}
+
+}  // namespace
+
 void mesh_necks(SurfaceDraft& draft) {
   for (std::uint32_t n = 0; n < draft.necks.size(); ++n) {
     const DraftNeck neck = draft.necks[n];
-    const std::uint32_t patch =
-        draft.add_patch({.kind = SurfacePatch::Kind::neck,
-                         .index = n,
-                         .regions = {draft.region_of_neck(n), 0},
-                         .shape = {.kind = RoundSurface::Kind::cylinder,
-                                   .center = draft.pieces[neck.pieces[0]].piece.center,
-                                   .axis = neck.axis,
-                                   .radius = neck.radius}});
-    const std::size_t count = neck.count;
-    std::vector<std::uint32_t> before = neck.rims[0];
-    for (std::size_t row = 1; row <= neck.rows; ++row) {
-      std::vector<std::uint32_t> next = neck.rims[1];
-      if (row < neck.rows)
-        for (std::size_t k = 0; k < count; ++k) {
-          // Along the line of the neck's side that is half an edge on in each row.
-          const double share = static_cast<double>(row) / static_cast<double>(neck.rows);
-          const double half = std::numbers::pi / static_cast<double>(count);
-          const double t = 2 * half * static_cast<double>(k) + half * static_cast<double>(row);
-          const Vector<3> beside =
-              neck.radius * (std::cos(t) * neck.across + std::sin(t) * neck.axis.cross(neck.across));
-          const Vector<3> base = draft.pieces[neck.pieces[0]].piece.center;
-          const double lower = (draft.made.vertices[neck.rims[0][0]] - base).dot(neck.axis);
-          const double upper = (draft.made.vertices[neck.rims[1][0]] - base).dot(neck.axis);
-          next[k] = draft.add_vertex(base + beside + (lower + share * (upper - lower)) * neck.axis,
-                                     draft.made.size[neck.rims[0][0]]);
-        }
-      for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t l = (k + 1) % count;
-        draft.add_triangle(patch, before[k], before[l], next[k]);
-        draft.add_triangle(patch, before[l], next[l], next[k]);
-      }
-      before = next;
+    const std::uint32_t patch = draft.add_patch({.kind = SurfacePatch::Kind::neck,
+                                                 .index = neck.bond,
+                                                 .regions = {draft.region_of_neck(n), 0},
+                                                 .shape = {.kind = RoundSurface::Kind::cylinder,
+                                                           .center = neck.center,
+                                                           .axis = neck.axis,
+                                                           .radius = neck.radius}});
+    if (neck.is_cut) {
+      mesh_cut_neck(draft, neck, patch);
+    } else {
+      mesh_whole_neck(draft, neck, patch);
     }
   }
 }

@@ -34,20 +34,17 @@ struct NeckVolumes {
 };
 NeckVolumes neck_volumes(const SurfaceDraft& draft) {
   NeckVolumes made{std::vector<double>(draft.solids.spheres.size(), 0.0), {}};
-  std::vector<char> counted(draft.necks.size(), 0);
+  std::vector<char> counted(draft.made.necks.size(), 0);
   for (std::uint32_t n = 0; n < draft.necks.size(); ++n) {
     const DraftNeck& neck = draft.necks[n];
     made.of_neck.push_back(0);
     if (std::exchange(counted[neck.bond], 1)) continue;
     made.of_neck[n] = neck.volume;
     for (std::size_t e = 0; e < (neck.wall ? 1u : 2u); ++e) {
-      const DraftPiece& piece = draft.pieces[neck.pieces[e]];
-      for (const Circle& circle : piece.circles) {
-        if (circle.kind != Circle::Kind::neck || circle.neck != n) continue;
-        const double cap = cap_volume(piece.piece.radius, piece.piece.radius - circle.depth);
-        made.of_neck[n] += cap;
-        made.of_sphere[piece.piece.sphere] += cap;
-      }
+      const double r = draft.solids.spheres.r[neck.spheres[e]];
+      const double cap = cap_volume(r, r - (e == 0 ? neck.begin : neck.distance - neck.end));
+      made.of_neck[n] += cap;
+      made.of_sphere[neck.spheres[e]] += cap;
     }
   }
   return made;
@@ -111,7 +108,7 @@ void state(SurfaceDraft& draft) {
   statement.fluid_volume = volume_of(draft.solids.domain) -
                            (is_capped ? contacts.volume_after : volume_of_balls(draft.solids.spheres));
   if (is_capped) statement.contact_area = contacts.contact_area;
-  std::vector<char> counted(draft.necks.size(), 0);
+  std::vector<char> counted(made.necks.size(), 0);
   for (const DraftNeck& neck : draft.necks)
     if (!std::exchange(counted[neck.bond], 1)) statement.fluid_volume -= neck.volume;
   if (!made.regions.empty()) made.regions.front().volume = statement.fluid_volume;

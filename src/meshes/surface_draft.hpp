@@ -43,6 +43,7 @@ struct DraftPiece {
   std::vector<Circle> circles = {};
   std::vector<Chord> chords = {};
   std::uint32_t layer = 0;                     ///< what is behind it, from the centre out
+  std::uint32_t below = 0;                     ///< so many layers below the surface
   std::uint32_t around = none, within = none;  ///< the next piece outwards and inwards, with its centre
   /// Its triangles are those of the piece around it, brought inwards, with prisms between.
   bool is_copied = false;
@@ -51,24 +52,45 @@ struct DraftPiece {
   bool is_outer() const { return around == none; }
 };
 
-/// A neck from a piece to another, or to a wall.
+/// Where the side of a neck meets an end of a period.
+struct NeckTrace {
+  int face = 0;  ///< Cut::face
+  std::vector<std::uint32_t> ids = {};
+  bool is_closed = false;  ///< does not repeat its first point
+};
+
+/// A neck from a sphere to another, or to a wall; what of it is in the domain, in one of its images.
 struct DraftNeck {
-  std::array<std::uint32_t, 2> pieces = {};  ///< the second only between spheres
+  /// That it begins and ends at, absent where these do not reach into the domain; the second only between
+  /// spheres.
+  std::array<std::uint32_t, 2> pieces = {Delaunay::none, Delaunay::none};
+  std::array<std::size_t, 2> circles = {};  ///< its own among those of the pieces
+  std::array<std::uint32_t, 2> spheres = {};
   std::optional<std::uint32_t> wall = {};
   std::uint32_t bond = 0;                                            ///< the same for images of one neck
+  std::array<int, 3> image = {};                                     ///< of the first sphere, in periods
+  bool is_cut = false;                                               ///< at an end of a period
+  Vector<3> center = Vector<3>::Zero();                              ///< of the first sphere
   Vector<3> axis = Vector<3>::UnitZ(), across = Vector<3>::UnitX();  ///< unit, perpendicular
-  double radius = 0, asked = 0;
+  double radius = 0;
+  double begin = 0, end = 0;                            ///< of its side along the axis, from the centre
   double distance = 0;                                  ///< of the centres, or of the centre from the wall
-  std::size_t count = 0;                                ///< points of a circle
-  std::size_t rows = 1;                                 ///< of triangles from circle to circle
+  double edge = 0;                                      ///< of its circles
+  std::size_t count = 0;                                ///< points of a circle, if not cut
+  std::size_t rows = 1;                                 ///< of triangles from circle to circle, if not cut
   std::array<std::vector<std::uint32_t>, 2> rims = {};  ///< both run alike, the second turned by half an edge
-  double volume = 0;                                    ///< between the spheres, in closed form
+  std::vector<NeckTrace> traces = {};
+  double volume = 0;  ///< between the spheres, in closed form, of all its images together
+
+  Vector<3> around() const { return axis.cross(across); }
 };
 
 /// A surface in the making.
 struct SurfaceDraft {
   SurfaceDraft(const Solids& given, const SurfaceMeshOptions& asked)
-      : solids(given), options(asked), boundary(boundary_of<3>(given.domain)), sizes(given, asked) {}
+      : solids(given), options(asked), boundary(boundary_of<3>(given.domain)), sizes(given, asked) {
+    for (const Piece& piece : solids.pieces) add_piece({piece});
+  }
 
   const Solids& solids;
   const SurfaceMeshOptions& options;
@@ -78,6 +100,19 @@ struct SurfaceDraft {
   std::vector<DraftNeck> necks = {};
   ConformingSurface made = {};
 
+  /// The piece that is an image of a sphere; `Delaunay::none` where that does not reach into the domain.
+  /// `below`: so many layers below the surface.
+  std::uint32_t piece_at(std::uint32_t sphere, const std::array<int, 3>& image,
+                         std::uint32_t below = 0) const {
+    const auto found = numbers_.find({sphere, image, below});
+    return found == numbers_.end() ? Delaunay::none : found->second;
+  }
+  std::uint32_t add_piece(DraftPiece piece) {
+    const auto number = static_cast<std::uint32_t>(pieces.size());
+    numbers_[{piece.piece.sphere, piece.piece.image, piece.below}] = number;
+    pieces.push_back(std::move(piece));
+    return number;
+  }
   std::uint32_t add_vertex(const Vector<3>& p, double size) {
     made.vertices.push_back(p);
     made.size.push_back(size);
@@ -129,12 +164,14 @@ struct SurfaceDraft {
   }
 
  private:
+  std::map<std::tuple<std::uint32_t, std::array<int, 3>, std::uint32_t>, std::uint32_t> numbers_;
   std::map<std::array<double, 3>, std::uint32_t> at_;
   std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 3> lifted_;
 };
 
-/// Finds the necks between spheres and to walls, makes them narrower where others would meet them, and puts
-/// their circles on the pieces and points on these.
+/// Finds the necks between spheres and to walls, makes them narrower where others would meet them, and
+/// narrower or wider where ends of periods would nearly touch them, and puts their circles on the pieces and,
+/// where no end cuts them, points on these.
 void add_necks(SurfaceDraft&);
 /// Adds the spheres within spheres in which their layers begin, after `add_necks`. Throws where a neck or a
 /// cap reaches through a layer.
@@ -143,6 +180,12 @@ void add_shells(SurfaceDraft&);
 void mesh_copied_shells(SurfaceDraft&);
 /// The points of all other circles; those at opposite ends are the same but for the period.
 void add_circles(SurfaceDraft&);
+/// Where necks meet ends of periods, with the same points at opposite ends. After their circles.
+void add_neck_traces(SurfaceDraft&);
+/// How clearly the ends of periods cut or miss a circle on a sphere, given by the direction of its centre and
+/// its radius: 1 or more where it makes triangles of edges of this length without small angles.
+double clearance_of_ends(const Boundary<3>&, const Vector<3>& center, double sphere_radius,
+                         const Vector<3>& direction, double radius, double edge);
 /// The point of a neck's wall that stands over a point of its section, given from its axis.
 Vector<3> foot_of(const SurfaceDraft&, const DraftNeck&, const Vector<3>& beside);
 /// Triangles of the sides of necks.

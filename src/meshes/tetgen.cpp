@@ -1,16 +1,18 @@
 #include "meshes/tetgen.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "bernal/core/error.hpp"
+#include "core/disjoint_sets.hpp"
 #include "files/input_file.hpp"
 #include "files/next_line.hpp"
 #include "files/output_file.hpp"
 #include "meshes/mesh_quality.hpp"
-#include "meshes/triangle_sides.hpp"
 
 namespace bernal {
 namespace {
@@ -105,6 +107,7 @@ void read_tetrahedra(const std::filesystem::path& file, VolumeMesh& mesh) {
   const bool has_parts = rows.number<int>() > 0;
   mesh.tetrahedra.reserve(count);
   mesh.region.reserve(count);
+  double turned = 0;  // all are turned alike, by exact arithmetic; doubles do not tell that of flat ones
   for (std::size_t t = 0; t < count; ++t) {
     rows.next();
     rows.number<std::size_t>();
@@ -113,13 +116,33 @@ void read_tetrahedra(const std::filesystem::path& file, VolumeMesh& mesh) {
       corner = rows.number<std::uint32_t>();
       if (corner >= mesh.vertices.size()) refuse("TetGen names a vertex that it did not write", file);
     }
-    if (sicn(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]) < 0)
-      std::swap(c[2], c[3]);
+    turned += sicn(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]);
     const double part = has_parts ? rows.number<double>() : 0;
     if (!(part >= 0 && part <= static_cast<double>(count))) refuse("TetGen's parts have no numbers", file);
     mesh.tetrahedra.push_back(c);
     mesh.region.push_back(static_cast<std::uint32_t>(part));
   }
+  if (turned < 0)
+    for (TetrahedronCorners& c : mesh.tetrahedra) std::swap(c[2], c[3]);
+}
+
+/// Which vertices are at an edge that one triangle has alone.
+std::vector<std::uint8_t> vertices_at_open_edges(const ConformingSurface& surface) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  edges.reserve(3 * surface.triangles.size());
+  for (const FaceCorners& c : surface.triangles)
+    for (const std::size_t k : {0, 1, 2}) {
+      const std::uint32_t from = c[k], to = c[(k + 1) % 3];
+      edges.push_back({std::min(from, to), std::max(from, to)});
+    }
+  std::ranges::sort(edges);
+  std::vector<std::uint8_t> is_open(surface.vertices.size(), 0);
+  for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
+    while (next < edges.size() && edges[next] == edges[i]) ++next;
+    if (next == i + 1)
+      for (const std::uint32_t v : edges[i]) is_open[v] = 1;
+  }
+  return is_open;
 }
 
 }  // namespace
@@ -158,6 +181,46 @@ void write_for_tetgen(const ConformingSurface& surface, const std::vector<Vector
   faces.close();
 }
 
+std::vector<Vector<3>> points_of_holes(const ConformingSurface& surface) {
+  constexpr double into = 0.02;  // of an edge
+  const auto is_hole = [&](std::size_t t) {
+    const SurfacePatch& patch = surface.patches[surface.patch[t]];
+    const bool is_end =
+        patch.kind == SurfacePatch::Kind::wall || patch.kind == SurfacePatch::Kind::period_end;
+    return !is_end && std::ranges::find(patch.regions, SurfacePatch::nothing) != patch.regions.end();
+  };
+  DisjointSets parts(surface.vertices.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (is_hole(t))
+      for (const std::size_t k : {1, 2}) parts.unite(surface.triangles[t][0], surface.triangles[t][k]);
+  const std::vector<std::uint8_t> at_open_edge = vertices_at_open_edges(surface);
+  struct Largest {
+    bool is_open = false;
+    double area = 0;
+    Vector<3> point = Vector<3>::Zero();
+  };
+  std::map<std::uint32_t, Largest> of_part;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (!is_hole(t)) continue;
+    const FaceCorners& c = surface.triangles[t];
+    const Vector<3>&a = surface.vertices[c[0]], &b = surface.vertices[c[1]], &d = surface.vertices[c[2]];
+    const Vector<3> normal = (b - a).cross(d - a);
+    const double area = normal.norm();
+    Largest& largest = of_part[parts.find(c[0])];
+    for (const std::size_t k : {0, 1, 2})
+      largest.is_open |= at_open_edge[c[k]] && at_open_edge[c[(k + 1) % 3]];
+    if (area <= largest.area) continue;
+    const bool is_behind = surface.patches[surface.patch[t]].regions[0] == SurfacePatch::nothing;
+    const double far = into * std::sqrt(area);
+    largest.area = area;
+    largest.point = (a + b + d) / 3 + (is_behind ? -far : far) * (normal / area);
+  }
+  std::vector<Vector<3>> points;
+  for (const auto& [part, largest] : of_part)
+    if (!largest.is_open) points.push_back(largest.point);
+  return points;
+}
+
 VolumeMesh read_from_tetgen(const ConformingSurface& surface, const std::filesystem::path& folder) {
   VolumeMesh mesh;
   mesh.triangles = surface.triangles;
@@ -168,7 +231,6 @@ VolumeMesh read_from_tetgen(const ConformingSurface& surface, const std::filesys
   read_vertices(surface, folder / "packing.1.node", mesh);
   read_tetrahedra(folder / "packing.1.ele", mesh);
   if (mesh.tetrahedra.empty()) refuse("TetGen made no tetrahedra", folder / "packing.1.ele");
-  take_regions_of_triangles(mesh);
   return mesh;
 }
 

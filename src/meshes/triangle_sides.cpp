@@ -26,10 +26,9 @@ std::int32_t region_of(const VolumeMesh& mesh, std::size_t triangle, std::size_t
   return mesh.patches[mesh.patch[triangle]].regions[side];
 }
 
-using Sides = std::vector<std::array<TriangleSide, 2>>;
+}  // namespace
 
-/// What is there, whatever its region.
-Sides found_sides(const VolumeMesh& mesh) {
+std::vector<std::array<TriangleSide, 2>> found_sides(const VolumeMesh& mesh) {
   // Triangles by their least corner: those of vertex v stand from first[v] to first[v + 1].
   const auto least = [](const FaceCorners& c) { return std::min({c[0], c[1], c[2]}); };
   std::vector<std::uint32_t> first(mesh.vertices.size() + 1, 0), sorted(mesh.triangles.size());
@@ -37,13 +36,10 @@ Sides found_sides(const VolumeMesh& mesh) {
   for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
   std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) sorted[next[least(mesh.triangles[t])]++] = t;
-  Sides sides(mesh.triangles.size());
+  std::vector<std::array<TriangleSide, 2>> sides(mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t)
     for (std::uint8_t f = 0; f < 4; ++f) {
-      FaceCorners c{};
-      for (std::size_t k = 0; k < 3; ++k)
-        c[k] = mesh.tetrahedra[t][static_cast<std::size_t>(faces_of_tetrahedron[f][k])];
-      c = from_least(c);
+      const FaceCorners c = from_least(face_of(mesh, t, f));
       for (std::uint32_t k = first[c[0]]; k < first[c[0] + 1]; ++k) {
         const FaceCorners of = from_least(mesh.triangles[sorted[k]]);
         const bool is_same = of == c, is_turned = of[1] == c[2] && of[2] == c[1];
@@ -57,10 +53,8 @@ Sides found_sides(const VolumeMesh& mesh) {
   return sides;
 }
 
-}  // namespace
-
 std::vector<std::array<TriangleSide, 2>> sides_of_triangles(const VolumeMesh& mesh) {
-  Sides sides = found_sides(mesh);
+  std::vector<std::array<TriangleSide, 2>> sides = found_sides(mesh);
   for (std::size_t t = 0; t < sides.size(); ++t)
     for (std::size_t side = 0; side < 2; ++side) {
       const TriangleSide& at = sides[t][side];
@@ -72,7 +66,7 @@ std::vector<std::array<TriangleSide, 2>> sides_of_triangles(const VolumeMesh& me
 }
 
 void take_regions_of_triangles(VolumeMesh& mesh) {
-  const Sides sides = found_sides(mesh);
+  const std::vector<std::array<TriangleSide, 2>> sides = found_sides(mesh);
   std::vector<std::int32_t> region(1 + *std::ranges::max_element(mesh.region), SurfacePatch::nothing);
   for (std::size_t t = 0; t < sides.size(); ++t)
     for (std::size_t side = 0; side < 2; ++side)
@@ -84,6 +78,48 @@ void take_regions_of_triangles(VolumeMesh& mesh) {
       throw Error(ErrorCode::bad_mesh, "tetrahedra were made where no region is: is the surface closed?");
     mesh.region[t] = static_cast<std::uint32_t>(of);
   }
+}
+
+FaceCorners face_of(const VolumeMesh& mesh, std::size_t t, std::size_t k) {
+  FaceCorners corners{};
+  for (std::size_t i = 0; i < 3; ++i)
+    corners[i] = mesh.tetrahedra[t][static_cast<std::size_t>(faces_of_tetrahedron[k][i])];
+  return corners;
+}
+
+std::vector<std::array<std::uint32_t, 4>> neighbours_of(const VolumeMesh& mesh) {
+  // Faces by their least corner: those of vertex v stand from first[v] to first[v + 1].
+  const std::size_t cells = mesh.tetrahedra.size();
+  const auto least = [](const FaceCorners& c) { return std::min({c[0], c[1], c[2]}); };
+  std::vector<std::size_t> first(mesh.vertices.size() + 1, 0);
+  for (std::size_t t = 0; t < cells; ++t)
+    for (std::size_t k = 0; k < 4; ++k) ++first[least(face_of(mesh, t, k)) + 1];
+  for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+  std::vector<std::size_t> next(first.begin(), first.end() - 1), sorted(4 * cells);
+  for (std::size_t t = 0; t < cells; ++t)
+    for (std::size_t k = 0; k < 4; ++k) sorted[next[least(face_of(mesh, t, k))]++] = 4 * t + k;
+  std::vector<std::array<std::uint32_t, 4>> behind(
+      cells, {TriangleSide::none, TriangleSide::none, TriangleSide::none, TriangleSide::none});
+  struct Entry {
+    std::array<std::uint32_t, 2> others;
+    std::size_t face;
+  };
+  std::vector<Entry> at;
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+    at.clear();
+    for (std::size_t i = first[v]; i < first[v + 1]; ++i) {
+      FaceCorners corners = face_of(mesh, sorted[i] / 4, sorted[i] % 4);
+      std::ranges::sort(corners);
+      at.push_back({{corners[1], corners[2]}, sorted[i]});
+    }
+    std::ranges::sort(at, {}, [](const Entry& e) { return std::pair(e.others, e.face); });
+    for (std::size_t i = 1; i < at.size(); ++i) {
+      if (at[i].others != at[i - 1].others) continue;
+      behind[at[i].face / 4][at[i].face % 4] = static_cast<std::uint32_t>(at[i - 1].face / 4);
+      behind[at[i - 1].face / 4][at[i - 1].face % 4] = static_cast<std::uint32_t>(at[i].face / 4);
+    }
+  }
+  return behind;
 }
 
 }  // namespace bernal

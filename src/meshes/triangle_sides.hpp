@@ -16,13 +16,23 @@ struct TriangleSide {
   bool is_there() const { return tetrahedron != none; }
 };
 
-/// Of every triangle the tetrahedra behind it and in front of it. Throws Error{bad_mesh} unless on each side
-/// that has a region there is exactly one, of that region, and on others none: the proof that a mesh keeps
-/// its surface. Cost: some 100 ns a tetrahedron.
+/// Of every triangle the tetrahedra behind it and in front of it, whatever their regions. Throws
+/// Error{bad_mesh} where two are on one side. Cost: some 100 ns a tetrahedron.
+std::vector<std::array<TriangleSide, 2>> found_sides(const VolumeMesh&);
+
+/// The same, and the proof that a mesh keeps its surface. Throws Error{bad_mesh} unless on each side
+/// that has a region there is exactly one, of that region, and on others none.
 std::vector<std::array<TriangleSide, 2>> sides_of_triangles(const VolumeMesh&);
 
 /// Where regions of tetrahedra are numbers of parts that hang together: gives each part the region that its
 /// triangles say. Throws Error{bad_mesh} where that is none. Precondition: there are tetrahedra.
 void take_regions_of_triangles(VolumeMesh&);
+
+/// A face of a tetrahedron, in the order of `faces_of_tetrahedron`.
+FaceCorners face_of(const VolumeMesh&, std::size_t tetrahedron, std::size_t face);
+
+/// Of every tetrahedron the one behind each of its faces; TriangleSide::none on the hull. Cost: some 200 ns
+/// and 50 bytes a tetrahedron.
+std::vector<std::array<std::uint32_t, 4>> neighbours_of(const VolumeMesh&);
 
 }  // namespace bernal

@@ -27,6 +27,9 @@ void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, 
           if (piece.circles[other].kind == Circle::Kind::contact) part.add_chain(chord.ids, false);
         }
       }
+    for (const DraftNeck& neck : draft.necks)
+      for (const NeckTrace& trace : neck.traces)
+        if (trace.face == static_cast<int>(face)) part.add_chain(trace.ids, trace.is_closed);
     return;
   }
   for (const DraftNeck& neck : draft.necks) {
@@ -37,6 +40,12 @@ void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, 
       part.add_chain(neck.rims[1], true);
     }
   }
+}
+
+bool is_in_neck(const DraftNeck& neck, const Vector<3>& p) {
+  const Vector<3> d = p - neck.center;
+  const double height = d.dot(neck.axis);
+  return height > neck.begin && height < neck.end && (d - height * neck.axis).norm() < neck.radius;
 }
 
 class BoxWalls {
@@ -88,6 +97,13 @@ class BoxWalls {
     std::set<std::pair<double, std::uint32_t>> crossings;
     std::vector<const Piece*> crossed;
     if (repeats_[k] && repeats_[l])
+      for (const DraftNeck& neck : draft_.necks)
+        for (const NeckTrace& trace : neck.traces) {
+          if (trace.face != 2 * k || trace.is_closed) continue;
+          for (const std::uint32_t id : {trace.ids.front(), trace.ids.back()})
+            if (const Vector<3>& p = draft_.made.vertices[id]; p[l] == at[l]) crossings.insert({p[m], id});
+        }
+    if (repeats_[k] && repeats_[l])
       for (const DraftPiece& piece : draft_.pieces)
         for (const Circle& circle : piece.circles) {
           if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != 2 * k ||
@@ -112,7 +128,9 @@ class BoxWalls {
       const double from = stops[s].first, length = stops[s + 1].first - from;
       const Vector<3> middle = point(from + 0.5 * length);
       if (std::ranges::any_of(crossed,
-                              [&](const Piece* p) { return (middle - p->center).norm() < p->radius; }))
+                              [&](const Piece* p) { return (middle - p->center).norm() < p->radius; }) ||
+          std::ranges::any_of(draft_.necks,
+                              [&](const DraftNeck& neck) { return neck.is_cut && is_in_neck(neck, middle); }))
         continue;
       auto& chain = chains.emplace_back(1, stops[s].second);
       for (const double share : spaced(length, 1, [&](double t) { return size(from + t * length); }))

@@ -10,7 +10,12 @@ namespace fs = std::filesystem;
 
 namespace bernal {
 
-fs::path folder_of(const fs::path& file) { return file.parent_path().empty() ? "." : file.parent_path(); }
+fs::path folder_of(const fs::path& file) {
+  const fs::path name = file.filename();
+  if (name.empty() || name == "." || name == "..")
+    throw Error(ErrorCode::cannot_write, "is a folder; give the name of a file in it", {file.string()});
+  return file.parent_path().empty() ? "." : file.parent_path();
+}
 
 void require_free(const fs::path& folder, const std::vector<std::string>& names) {
   const Manifest of_result = manifest_of(folder);

@@ -5,7 +5,8 @@
 
 namespace bernal {
 
-/// The folder of a file, "." where its name has none.
+/// The folder of a file, "." where its name has none. Throws Error{cannot_write} for a name that ends in a
+/// folder.
 std::filesystem::path folder_of(const std::filesystem::path& file);
 
 /// Throws Error{cannot_write} where a file of a result, or something that is no file, would be replaced by

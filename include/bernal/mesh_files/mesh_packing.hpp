@@ -66,7 +66,8 @@ struct BedMeshReport {
   double least_edge = 0;            ///< of all triangles, as a length
   double least_triangle_angle = 0;  ///< in degrees
   Vector<3> place_of_least_angle = Vector<3>::Zero();
-  std::size_t shrunk_necks = 0;  ///< whose radius is smaller than asked for
+  std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
+  std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
 
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges

@@ -1,0 +1,193 @@
+#include "meshes/section_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/disjoint_sets.hpp"
+
+namespace bernal {
+namespace {
+
+using Kind = SurfacePatch::Kind;
+
+/// Closed chains of edges, of which as many begin as end at each vertex; each ends where it begins.
+std::vector<std::vector<std::uint32_t>> chains_of(const std::vector<std::array<std::uint32_t, 2>>& edges) {
+  std::vector<std::vector<std::uint32_t>> chains;
+  std::vector<std::uint8_t> used(edges.size(), 0);
+  const auto next_from = [&](std::uint32_t vertex) {
+    auto edge = std::ranges::lower_bound(edges, std::array{vertex, std::uint32_t{0}});
+    while (edge != edges.end() && (*edge)[0] == vertex &&
+           used[static_cast<std::size_t>(edge - edges.begin())])
+      ++edge;
+    return edge != edges.end() && (*edge)[0] == vertex ? edge : edges.end();
+  };
+  for (std::size_t first = 0; first < edges.size(); ++first) {
+    if (used[first]) continue;
+    std::vector<std::uint32_t> chain{edges[first][0]};
+    for (auto edge = edges.begin() + static_cast<std::ptrdiff_t>(first);
+         edge != edges.end() && (chain.size() == 1 || chain.back() != chain.front());
+         edge = next_from(chain.back())) {
+      used[static_cast<std::size_t>(edge - edges.begin())] = 1;
+      chain.push_back((*edge)[1]);
+    }
+    chains.push_back(std::move(chain));
+  }
+  return chains;
+}
+
+}  // namespace
+
+void SurfaceParts::Range::take(const Range& other) {
+  low = std::min(low, other.low);
+  high = std::max(high, other.high);
+}
+
+SurfaceParts::SurfaceParts(const ConformingSurface& surface, int axis) : surface_(surface), axis_(axis) {
+  find_pieces();
+  std::vector<Range> extent(surface.patches.size(), {std::numeric_limits<double>::infinity(),
+                                                     -std::numeric_limits<double>::infinity()});
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const std::uint32_t patch = surface.patch[t];
+    if (is_wall(patch)) continue;
+    const Range range = range_of(t);
+    longest_edge_ = std::max(longest_edge_, range.high - range.low);
+    if (!is_neck(patch)) extent[piece_[patch]].take(range);
+  }
+  for (const Range& of : extent) largest_extent_ = std::max(largest_extent_, of.high - of.low);
+}
+
+SurfaceParts::Range SurfaceParts::range_of(std::size_t triangle) const {
+  const FaceCorners& c = surface_.triangles[triangle];
+  const auto [low, high] = std::minmax(
+      {surface_.vertices[c[0]][axis_], surface_.vertices[c[1]][axis_], surface_.vertices[c[2]][axis_]});
+  return {low, high};
+}
+
+bool SurfaceParts::is_wall(std::uint32_t patch) const {
+  return surface_.patches[patch].kind == Kind::wall || surface_.patches[patch].kind == Kind::period_end;
+}
+
+bool SurfaceParts::is_neck(std::uint32_t patch) const { return surface_.patches[patch].kind == Kind::neck; }
+
+/// Patches of one sphere, as its own and those of its caps, share vertices.
+void SurfaceParts::find_pieces() {
+  const std::size_t patches = surface_.patches.size();
+  DisjointSets sets(patches);
+  std::vector<std::uint32_t> first(surface_.vertices.size(), not_of_whole);
+  const auto for_each_corner = [&](bool necks, const auto& body) {
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      const std::uint32_t patch = surface_.patch[t];
+      if (is_wall(patch) || is_neck(patch) != necks) continue;
+      for (const std::uint32_t corner : surface_.triangles[t]) body(patch, corner);
+    }
+  };
+  for_each_corner(false, [&](std::uint32_t patch, std::uint32_t corner) {
+    if (first[corner] == not_of_whole) first[corner] = patch;
+    sets.unite(first[corner], patch);
+  });
+  piece_.resize(patches);
+  for (std::uint32_t p = 0; p < patches; ++p) piece_[p] = sets.find(p);
+  piece_of_vertex_ = std::move(first);
+  for (std::uint32_t& piece : piece_of_vertex_)
+    if (piece != not_of_whole) piece = piece_[piece];
+  pieces_of_neck_.resize(patches);
+  for_each_corner(true, [&](std::uint32_t patch, std::uint32_t corner) {
+    const std::uint32_t piece = piece_of_vertex_[corner];
+    auto& pieces = pieces_of_neck_[patch];
+    if (piece != not_of_whole && std::ranges::find(pieces, piece) == pieces.end()) pieces.push_back(piece);
+  });
+}
+
+std::vector<std::uint8_t> SurfaceParts::chosen_pieces(const Range& near) const {
+  std::vector<std::uint8_t> chosen(surface_.patches.size(), 0);
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+    const std::uint32_t patch = surface_.patch[t];
+    if (is_wall(patch) || !range_of(t).meets(near)) continue;
+    if (!is_neck(patch)) chosen[piece_[patch]] = 1;
+    for (const std::uint32_t piece : pieces_of_neck_[patch]) chosen[piece] = 1;
+  }
+  return chosen;
+}
+
+SurfacePart SurfaceParts::near(double low, double high) const {
+  const Range near{low - longest_edge_, high + longest_edge_};
+  const std::vector<std::uint8_t> chosen = chosen_pieces(near);
+  std::vector<std::uint8_t> takes(surface_.patches.size(), 0);
+  for (std::uint32_t p = 0; p < takes.size(); ++p) {
+    if (is_wall(p)) continue;
+    const auto& pieces = pieces_of_neck_[p];
+    takes[p] = is_neck(p) ? !pieces.empty() && std::ranges::all_of(pieces, [&](auto k) { return chosen[k]; })
+                          : chosen[piece_[p]];
+  }
+  Range all = near;
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
+    if (takes[surface_.patch[t]]) all.take(range_of(t));
+  PartBuilder builder(surface_.vertices);
+  SurfacePart& part = builder.part();
+  part.surface.patches = surface_.patches;
+  part.surface.regions = surface_.regions;
+  for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
+    const std::uint32_t patch = surface_.patch[t];
+    if (is_wall(patch) ? !range_of(t).meets(all) : !takes[patch]) continue;
+    builder.add(surface_.triangles[t], patch);
+    part.triangles.push_back(t);
+  }
+  const auto lid = static_cast<std::uint32_t>(part.surface.patches.size());
+  part.surface.patches.push_back({.kind = Kind::wall});
+  if (surface_.regions.size() == 1)  // else the spheres are filled too, and need not be closed
+    builder.close(lid, [&](std::uint32_t patch) { return patch != lid && !is_wall(patch); });
+  builder.close(lid, [](std::uint32_t) { return true; });
+  return std::move(part);
+}
+
+void PartBuilder::add(const FaceCorners& triangle, std::uint32_t patch) {
+  if (number_.empty()) number_.assign(vertices_.size(), not_of_whole);
+  FaceCorners corners{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::uint32_t& number = number_[triangle[k]];
+    if (number == not_of_whole) {
+      number = static_cast<std::uint32_t>(part_.vertex.size());
+      part_.vertex.push_back(triangle[k]);
+      part_.surface.vertices.push_back(vertices_[triangle[k]]);
+    }
+    corners[k] = number;
+  }
+  part_.surface.triangles.push_back(corners);
+  part_.surface.patch.push_back(patch);
+}
+
+void PartBuilder::close(std::uint32_t lid, const std::function<bool(std::uint32_t patch)>& is_meant) {
+  ConformingSurface& made = part_.surface;
+  struct Edge {
+    std::array<std::uint32_t, 2> low_high;
+    bool is_upwards;
+  };
+  std::vector<Edge> edges;
+  for (std::size_t t = 0; t < made.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3 && is_meant(made.patch[t]); ++k) {
+      const std::uint32_t from = made.triangles[t][k], to = made.triangles[t][(k + 1) % 3];
+      edges.push_back({{std::min(from, to), std::max(from, to)}, from < to});
+    }
+  std::ranges::sort(edges, {}, &Edge::low_high);
+  std::vector<std::array<std::uint32_t, 2>> open;
+  for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
+    while (next < edges.size() && edges[next].low_high == edges[i].low_high) ++next;
+    const auto [low, high] = edges[i].low_high;
+    if (next == i + 1) open.push_back(edges[i].is_upwards ? std::array{low, high} : std::array{high, low});
+  }
+  std::ranges::sort(open);
+  for (const std::vector<std::uint32_t>& chain : chains_of(open)) {
+    Vector<3> middle = Vector<3>::Zero();
+    for (std::size_t k = 1; k < chain.size(); ++k) middle += made.vertices[chain[k]];
+    const auto apex = static_cast<std::uint32_t>(made.vertices.size());
+    made.vertices.push_back(middle / static_cast<double>(chain.size() - 1));
+    part_.vertex.push_back(not_of_whole);
+    for (std::size_t k = 1; k < chain.size(); ++k) {
+      made.triangles.push_back({apex, chain[k], chain[k - 1]});
+      made.patch.push_back(lid);
+    }
+  }
+}
+
+}  // namespace bernal

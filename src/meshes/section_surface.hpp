@@ -1,0 +1,69 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "meshes/conforming_surface.hpp"
+
+namespace bernal {
+
+constexpr std::uint32_t not_of_whole = 0xFFFFFFFF;
+
+/// A part of a surface, with vertices of its own.
+struct SurfacePart {
+  ConformingSurface surface;             ///< without statement, sizes and periods
+  std::vector<std::uint32_t> vertex;     ///< of the whole, by those of the part, or `not_of_whole`
+  std::vector<std::uint32_t> triangles;  ///< of the whole; the part may have others after these
+};
+
+/// Picks parts of a surface. It holds what it needs of spheres, necks and walls; the surface outlives it.
+class SurfaceParts {
+ public:
+  SurfaceParts(const ConformingSurface&, int axis);
+
+  /// The spheres that reach into an interval along the axis or come near it, whole, with the necks between
+  /// them, and the walls beside these. Lids close spheres and necks, also where they stand on walls, and
+  /// the walls beyond all of these.
+  SurfacePart near(double low, double high) const;
+  /// The largest extent of a sphere along the axis.
+  double largest_extent() const { return largest_extent_; }
+
+ private:
+  struct Range {
+    double low = 0, high = 0;
+    bool meets(const Range& other) const { return low <= other.high && other.low <= high; }
+    void take(const Range& other);
+  };
+  Range range_of(std::size_t triangle) const;
+  bool is_wall(std::uint32_t patch) const;
+  bool is_neck(std::uint32_t patch) const;
+  void find_pieces();
+  std::vector<std::uint8_t> chosen_pieces(const Range& near) const;
+
+  const ConformingSurface& surface_;
+  int axis_;
+  std::vector<std::uint32_t> piece_;                        ///< of each patch that is no neck and no wall
+  std::vector<std::uint32_t> piece_of_vertex_;              ///< `not_of_whole` on walls and inside of necks
+  std::vector<std::vector<std::uint32_t>> pieces_of_neck_;  ///< by patch
+  double largest_extent_ = 0, longest_edge_ = 0;
+};
+
+/// Numbers vertices of a part as its triangles need them.
+class PartBuilder {
+ public:
+  /// Vertices of the whole, in which triangles are given.
+  explicit PartBuilder(const std::vector<Vector<3>>& vertices) : vertices_(vertices) {}
+  void add(const FaceCorners& triangle, std::uint32_t patch);
+  /// Cones over the closed chains of edges that one triangle of the patches that are meant has alone, to the
+  /// middle of each.
+  void close(std::uint32_t lid, const std::function<bool(std::uint32_t patch)>& is_meant);
+  SurfacePart& part() { return part_; }
+
+ private:
+  const std::vector<Vector<3>>& vertices_;
+  std::vector<std::uint32_t> number_;
+  SurfacePart part_;
+};
+
+}  // namespace bernal
