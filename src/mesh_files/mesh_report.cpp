@@ -11,6 +11,8 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"spheres", report.spheres},
             {"necks", report.necks},
             {"shrunk_necks", report.shrunk_necks},
+            {"clipped", report.clipped},
+            {"cleared", report.cleared},
             {"triangles", report.triangles},
             {"least_edge", report.least_edge},
             {"least_triangle_angle", report.least_triangle_angle},

@@ -15,7 +15,8 @@ class FlatFaces {
       for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
         for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c) {
           const Circle& circle = draft_.pieces[p].circles[c];
-          if (circle.chains.empty() || (circle.kind == Circle::Kind::end && circle.face % 2 == 1) != upper)
+          if (circle.chains.empty() ||
+              (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) != upper)
             continue;
           if (circle.kind == Circle::Kind::contact || draft_.options.solids) make_face(p, c);
         }
@@ -52,7 +53,7 @@ class FlatFaces {
     const Vector<3> u = circle.normal.unitOrthogonal(), v = circle.normal.cross(u);
     const Vector<3> origin = center + circle.depth * circle.normal;
     const int axis = circle.kind == Circle::Kind::end ? circle.face / 2 : -1;
-    const double at = axis < 0 ? 0 : draft_.boundary.origin[axis];
+    const double at = axis < 0 ? 0 : draft_.end_at(circle.face);
     return {draft_,
             [=](const Vector<3>& p) { return Vector<3>((p - origin).dot(u), (p - origin).dot(v), 0); },
             [=](const Vector<3>& p) {
@@ -70,12 +71,12 @@ class FlatFaces {
     SurfacePatch patch{SurfacePatch::Kind::cut_face, piece.piece.sphere, {draft_.region_of_piece(p), 0}};
     if (circle.kind == Circle::Kind::neck) patch.regions[1] = draft_.region_of_neck(circle.neck);
     if (circle.kind == Circle::Kind::end) {
-      patch.kind = SurfacePatch::Kind::period_end;
+      patch.kind = draft_.kind_of_ends();
       patch.index = static_cast<std::uint32_t>(circle.face);
       patch.regions[1] = SurfacePatch::nothing;
     }
     const std::uint32_t number = draft_.add_patch(patch);
-    if (circle.kind == Circle::Kind::end && circle.face % 2 == 1) {
+    if (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) {
       const int axis = circle.face / 2;
       std::array<int, 3> image = piece.piece.image;
       --image[static_cast<std::size_t>(axis)];
