@@ -30,6 +30,8 @@ std::string text_of_place(const Vector<3>& p) {
 
 void print_surface(const BedMeshReport& report, std::string_view unit) {
   fmt::print("spheres      {}; {} necks", grouped(report.spheres), grouped(report.necks));
+  if (report.clipped > 0) fmt::print("; {} cut by faces of the box", grouped(report.clipped));
+  if (report.cleared > 0) fmt::print(", {} made smaller, which nearly touched it", grouped(report.cleared));
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for", grouped(report.shrunk_necks));
   if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
@@ -107,6 +109,7 @@ Option option_of(const MeshKey& key, std::map<std::string, std::string>& words) 
                 [&words, name = key.name](const std::string& word) { words[name] = word; }, key.what,
                 key.placeholder};
   if (!key.words.empty()) return one_of(std::move(option), key.words);
+  if (std::holds_alternative<std::string MeshFileOptions::*>(key.to)) return option;
   if (std::holds_alternative<int MeshFileOptions::*>(key.to))
     return within(std::move(option), static_cast<int>(key.least), static_cast<int>(key.most));
   return within(std::move(option), key.least, key.most);

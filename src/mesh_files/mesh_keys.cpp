@@ -33,6 +33,7 @@ struct Taken {
     const auto [stop, problem] = std::from_chars(text.data(), end, options.*member);
     if (problem != std::errc() || stop != end) refuse_value(key, text);
   }
+  void operator()(std::string MeshFileOptions::*member) const { options.*member = text; }
   void operator()(bool MeshFileOptions::*member) const { options.*member = place() == 1; }
   void operator()(ContactTreatment MeshFileOptions::*member) const {
     constexpr ContactTreatment treatments[] = {ContactTreatment::bridge, ContactTreatment::gap,
@@ -70,6 +71,10 @@ const std::vector<MeshKey>& mesh_keys() {
        .placeholder = "WORD",
        .to = &Of::solids,
        .words = {"fluid", "all"}},
+      {"cut",
+       "The part that is meshed, in the scene's unit: \"x = 1..4, y = 1..4, z = 0..5\"; its faces cut "
+       "spheres",
+       "BOX", &Of::cut},
       {"order", "2: elements with middles of edges, on the true spheres; 1 if absent", "N", &Of::order, 1, 2},
   };
   return all;

@@ -1,9 +1,13 @@
 #include "bernal/mesh_files/mesh_packing.hpp"
 
+#include <array>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/measure/slab.hpp"
 #include "bernal/scene/sphere_layers.hpp"
 #include "bernal/version.hpp"
 #include "mesh_files/mesh_file.hpp"
@@ -12,6 +16,7 @@
 #include "meshes/mesh_quality.hpp"
 #include "meshes/second_order.hpp"
 #include "result/free_places.hpp"
+#include "solids/cut_out.hpp"
 #include "solids/solids.hpp"
 
 namespace fs = std::filesystem;
@@ -93,6 +98,64 @@ Shells shells_of(const Packing& packing, const MeshFileOptions& options) {
   return shells;
 }
 
+/// The box that a text like "x = 1..4, y = 1..4, z = 0..5" names.
+Bounds<3> box_in(std::string_view text, Unit unit) {
+  Bounds<3> box;
+  std::array<bool, 3> has{};
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    const LowerPart slab = slab_in(text.substr(from, comma - from), unit);
+    from = comma + 1;
+    int axis = 0;
+    slab.direction.cwiseAbs().maxCoeff(&axis);
+    if (std::abs(slab.direction[axis]) < 1 || has[static_cast<std::size_t>(axis)] ||
+        !std::isfinite(slab.from) || !std::isfinite(slab.height))
+      break;
+    has[static_cast<std::size_t>(axis)] = true;
+    const double one = -slab.direction[axis] * slab.from, other = -slab.direction[axis] * slab.height;
+    box.lower[axis] = std::min(one, other);
+    box.upper[axis] = std::max(one, other);
+    if (from > text.size() && has[0] && has[1] && has[2]) return box;
+  }
+  refuse(fmt::format("‹cut› takes a box such as \"x = 1..4, y = 1..4, z = 0..5\", not \"{}\"",
+                     plain_text(text)));
+}
+
+/// The solids of a packing, or of a part of it.
+struct SolidsToMesh {
+  Solids solids;
+  std::vector<std::uint32_t>
+      of_packing;  ///< numbers of the spheres in the packing; empty if they are the same
+};
+SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
+                            BedMeshReport& report) {
+  Solids solids = solids_of(packing.spheres, packing.domain,
+                            {.contact = options.contact,
+                             .gap = options.gap,
+                             .bridge_radius = options.bridge_radius,
+                             .shells = shells_of(packing, options)},
+                            monitor);
+  if (options.cut.empty()) return {std::move(solids), {}};
+  CutOut part = cut_out(solids, box_in(options.cut, packing.scene.unit), options.gap);
+  if (part.solids.spheres.empty()) refuse("there are no spheres in the box of ‹cut›");
+  report.spheres = part.solids.spheres.size();
+  report.domain_volume = volume_of(part.solids.domain);
+  report.cleared = part.shrunk;
+  for (const Piece& piece : part.solids.pieces) report.clipped += !piece.cuts.empty();
+  return {std::move(part.solids), std::move(part.of_packing)};
+}
+
+/// Lets patches and regions name spheres by their numbers in the packing.
+void name_spheres(ConformingSurface& surface, const std::vector<std::uint32_t>& of_packing) {
+  if (of_packing.empty()) return;
+  using Kind = SurfacePatch::Kind;
+  for (SurfacePatch& patch : surface.patches)
+    if (patch.kind == Kind::sphere || patch.kind == Kind::layer || patch.kind == Kind::cut_face)
+      patch.index = of_packing[patch.index];
+  for (MeshRegion& region : surface.regions)
+    if (region.sphere) region.sphere = of_packing[*region.sphere];
+}
+
 /// The mesh, its names, and what it is like.
 struct NamedMesh {
   VolumeMesh mesh;
@@ -105,19 +168,15 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.domain_volume = volume_of(packing.domain);
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
-  const Solids solids = solids_of(packing.spheres, packing.domain,
-                                  {.contact = options.contact,
-                                   .gap = options.gap,
-                                   .bridge_radius = options.bridge_radius,
-                                   .shells = shells_of(packing, options)},
-                                  monitor);
-  const ConformingSurface surface = conforming_surface(solids,
-                                                       {.sphere_edge = options.sphere_edge,
-                                                        .neck_edge = options.neck_edge,
-                                                        .per_gap = options.gap_edge,
-                                                        .solids = options.solids,
-                                                        .per_layer = options.layer_edge},
-                                                       monitor);
+  const auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
+  ConformingSurface surface = conforming_surface(solids,
+                                                 {.sphere_edge = options.sphere_edge,
+                                                  .neck_edge = options.neck_edge,
+                                                  .per_gap = options.gap_edge,
+                                                  .solids = options.solids,
+                                                  .per_layer = options.layer_edge},
+                                                 monitor);
+  name_spheres(surface, of_packing);
   take_surface(surface, report);
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
@@ -131,7 +190,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
     report.straight_edges = edges.kept_straight;
     report.parts.push_back({"second order", curving.seconds()});
   }
-  MeshGroups groups = groups_of(mesh, packing.domain, classes_of_mesh(packing));
+  MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
   take_mesh(mesh, groups, report);
   return {std::move(mesh), std::move(groups)};
 }

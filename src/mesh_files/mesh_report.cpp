@@ -12,6 +12,8 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"necks", report.necks},
             {"shrunk_necks", report.shrunk_necks},
             {"widened_necks", report.widened_necks},
+            {"clipped", report.clipped},
+            {"cleared", report.cleared},
             {"triangles", report.triangles},
             {"least_edge", report.least_edge},
             {"least_triangle_angle", report.least_triangle_angle},

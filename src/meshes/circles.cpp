@@ -93,7 +93,7 @@ class Circles {
   std::uint32_t corner(std::uint32_t p, std::size_t a, std::size_t b, const Vector<3>& at) {
     for (const std::size_t c : {a, b}) {
       const Circle& circle = draft_.pieces[p].circles[c];
-      if (circle.kind != Circle::Kind::end || circle.face % 2 == 0) continue;
+      if (circle.kind != Circle::Kind::end || !draft_.is_lifted(circle.face)) continue;
       const int axis = circle.face / 2;
       const std::uint32_t lower = known(piece_before(p, axis));
       const auto same = [&](std::size_t of) {
@@ -129,7 +129,7 @@ class Circles {
   int upper_among(std::uint32_t p, std::span<const std::size_t> circles) const {
     for (const std::size_t c : circles)
       if (const Circle& circle = draft_.pieces[p].circles[c];
-          circle.kind == Circle::Kind::end && circle.face % 2 == 1)
+          circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face))
         return circle.face;
     return -1;
   }
@@ -137,8 +137,7 @@ class Circles {
   void put_on_ends(std::uint32_t p, std::span<const std::size_t> circles, Vector<3>& q) const {
     for (const std::size_t c : circles)
       if (const Circle& circle = draft_.pieces[p].circles[c]; circle.kind == Circle::Kind::end)
-        q[circle.face / 2] = draft_.boundary.origin[circle.face / 2] +
-                             (circle.face % 2 == 1 ? draft_.boundary.edges[circle.face / 2] : 0);
+        q[circle.face / 2] = draft_.end_at(circle.face);
   }
 
   bool has_end(std::uint32_t p, std::span<const std::size_t> circles) const {
@@ -285,7 +284,7 @@ class Circles {
   void fill(std::uint32_t p, std::size_t c) {
     Circle& circle = draft_.pieces[p].circles[c];
     if (!circle.chains.empty() || circle.is_whole) return;
-    if (circle.kind == Circle::Kind::end && circle.face % 2 == 1) {
+    if (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) {
       const int axis = circle.face / 2;
       const std::uint32_t lower = piece_before(p, axis);
       if (lower == Delaunay::none) return;
@@ -306,7 +305,7 @@ class Circles {
     const auto at = [&](double t) {
       Vector<3> q =
           piece.center + circle.depth * circle.normal + circle.radius * (std::cos(t) * u + std::sin(t) * v);
-      if (circle.kind == Circle::Kind::end) q[circle.face / 2] = draft_.boundary.origin[circle.face / 2];
+      if (circle.kind == Circle::Kind::end) q[circle.face / 2] = draft_.end_at(circle.face);
       return q;
     };
     for (const Arc& arc : arcs_on(draft_.pieces[p], c)) {

@@ -15,7 +15,8 @@ class FlatFaces {
       for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
         for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c) {
           const Circle& circle = draft_.pieces[p].circles[c];
-          if (circle.chains.empty() || (circle.kind == Circle::Kind::end && circle.face % 2 == 1) != upper)
+          if (circle.chains.empty() ||
+              (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) != upper)
             continue;
           if (circle.kind == Circle::Kind::contact || draft_.options.solids) make_face(p, c);
         }
@@ -54,13 +55,14 @@ class FlatFaces {
 
   PlanarPart part_of(const Circle& circle, const Vector<3>& center) {
     return part_in(circle.normal, center + circle.depth * circle.normal,
-                   circle.kind == Circle::Kind::end ? circle.face / 2 : -1);
+                   circle.kind == Circle::Kind::end ? circle.face : -1);
   }
 
-  /// In the plane through a point; `axis`: whose lower end it is, or -1.
-  PlanarPart part_in(const Vector<3>& normal, const Vector<3>& origin, int axis) {
+  /// In the plane through a point; `face`: the end of a period that it is, or -1.
+  PlanarPart part_in(const Vector<3>& normal, const Vector<3>& origin, int face) {
     const Vector<3> u = normal.unitOrthogonal(), v = normal.cross(u);
-    const double at = axis < 0 ? 0 : draft_.boundary.origin[axis];
+    const int axis = face < 0 ? -1 : face / 2;
+    const double at = face < 0 ? 0 : draft_.end_at(face);
     return {draft_,
             [=](const Vector<3>& p) { return Vector<3>((p - origin).dot(u), (p - origin).dot(v), 0); },
             [=](const Vector<3>& p) {
@@ -78,12 +80,12 @@ class FlatFaces {
     SurfacePatch patch{SurfacePatch::Kind::cut_face, piece.piece.sphere, {draft_.region_of_piece(p), 0}};
     if (circle.kind == Circle::Kind::neck) patch.regions[1] = draft_.region_of_neck(circle.neck);
     if (circle.kind == Circle::Kind::end) {
-      patch.kind = SurfacePatch::Kind::period_end;
+      patch.kind = draft_.kind_of_ends();
       patch.index = static_cast<std::uint32_t>(circle.face);
       patch.regions[1] = SurfacePatch::nothing;
     }
     const std::uint32_t number = draft_.add_patch(patch);
-    if (circle.kind == Circle::Kind::end && circle.face % 2 == 1) {
+    if (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) {
       const int axis = circle.face / 2;
       std::array<int, 3> image = piece.piece.image;
       --image[static_cast<std::size_t>(axis)];
@@ -139,7 +141,7 @@ class FlatFaces {
     }
     Vector<3> origin = neck.center;
     origin[axis] = draft_.boundary.origin[axis];
-    PlanarPart part = part_in(-Vector<3>::Unit(axis), origin, axis);
+    PlanarPart part = part_in(-Vector<3>::Unit(axis), origin, 2 * axis);
     std::vector<std::uint32_t> ends;  // of what bounds it so far
     const auto add = [&](const std::vector<std::uint32_t>& chain, bool is_closed) {
       part.add_chain(chain, is_closed);

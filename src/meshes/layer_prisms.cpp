@@ -37,7 +37,7 @@ class CopiedShells {
       const SurfacePatch& patch = draft_.made.patches[draft_.made.patch[t]];
       const std::int32_t piece = patch.regions[0] - 1;
       if (piece < 0 || piece >= static_cast<std::int32_t>(tops_.size()) ||
-          !is_wanted[static_cast<std::size_t>(piece)] || patch.kind == SurfacePatch::Kind::period_end)
+          !is_wanted[static_cast<std::size_t>(piece)] || patch.kind == draft_.kind_of_ends())
         continue;
       tops_[static_cast<std::size_t>(piece)].push_back(draft_.made.triangles[t]);
     }
@@ -143,7 +143,7 @@ class CopiedShells {
   void add_ring(const DraftPiece& around, std::uint32_t number, const Circle& circle) {
     const Circle& other = circle_like(around, circle);
     const std::uint32_t patch =
-        draft_.add_patch({.kind = SurfacePatch::Kind::period_end,
+        draft_.add_patch({.kind = draft_.kind_of_ends(),
                           .index = static_cast<std::uint32_t>(circle.face),
                           .regions = {draft_.region_of_piece(number), SurfacePatch::nothing}});
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {

@@ -7,6 +7,7 @@
 
 #include "bernal/core/error.hpp"
 #include "meshes/surface_draft.hpp"
+#include "solids/cut_out.hpp"
 
 namespace bernal {
 namespace {
@@ -122,6 +123,19 @@ class ShellsOfPieces {
       if (plan.is_copied[k]) plan.edge[k + 1] = std::min(plan.edge[k + 1], plan.edge[k]);
   }
 
+  /// The pieces of balls in the domain.
+  std::vector<Piece> pieces_within(const Spheres<dynamic>& balls) const {
+    if (!draft_.solids.is_cut) return pieces_of(balls, draft_.solids.domain);
+    std::vector<Piece> pieces;
+    const Bounds<3> box = bounds_of(draft_.solids.domain);
+    for (std::uint32_t i = 0; i < balls.size(); ++i)
+      if (auto piece = piece_in_box(balls.center(i), balls.r[i], box)) {
+        piece->sphere = i;
+        pieces.push_back(std::move(*piece));
+      }
+    return pieces;
+  }
+
   /// Adds the spheres that are so many layers below the surface; false if there are none.
   bool add_level(std::uint32_t below, const std::map<std::uint32_t, Plan>& plans) {
     Spheres<dynamic> balls(3);
@@ -133,7 +147,7 @@ class ShellsOfPieces {
       number.push_back(sphere);
     }
     if (number.empty()) return false;
-    for (Piece& piece : pieces_of(balls, draft_.solids.domain)) {
+    for (Piece& piece : pieces_within(balls)) {
       piece.sphere = number[piece.sphere];
       const Plan& plan = plans.at(piece.sphere);
       DraftPiece made{.piece = std::move(piece)};

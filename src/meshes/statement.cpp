@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "meshes/surface_draft.hpp"
+#include "solids/cut_out.hpp"
 
 namespace bernal {
 
@@ -27,6 +28,12 @@ Vector<3> inner_point(const Piece& piece) {
 namespace {
 
 double volume_of_ball(double radius) { return 4 * std::numbers::pi / 3 * radius * radius * radius; }
+
+/// The volume of a ball in the domain: of all its images together.
+double volume_within(const SurfaceDraft& draft, const Vector<3>& center, double radius) {
+  return draft.solids.is_cut ? volume_in_box(center, radius, bounds_of(draft.solids.domain))
+                             : volume_of_ball(radius);
+}
 
 /// What necks take of each sphere, and the volume of each neck with that; 0 for images of others.
 struct NeckVolumes {
@@ -50,6 +57,13 @@ NeckVolumes neck_volumes(const SurfaceDraft& draft) {
   return made;
 }
 
+double volume_of_spheres(const SurfaceDraft& draft) {
+  if (!draft.solids.is_cut) return volume_of_balls(draft.solids.spheres);
+  double sum = 0;
+  for (const Piece& piece : draft.solids.pieces) sum += volume_within(draft, piece.center, piece.radius);
+  return sum;
+}
+
 }  // namespace
 
 void add_regions(SurfaceDraft& draft) {
@@ -67,8 +81,9 @@ void add_regions(SurfaceDraft& draft) {
     if (is_capped && piece.is_outer()) continue;
     region.volume = 0;
     if (!counted.insert({sphere, piece.layer}).second) continue;
-    region.volume = volume_of_ball(piece.piece.radius) -
-                    (piece.layer > 0 ? volume_of_ball(shells[piece.layer - 1]) : 0.0) -
+    const Vector<3>& center = piece.piece.center;
+    region.volume = volume_within(draft, center, piece.piece.radius) -
+                    (piece.layer > 0 ? volume_within(draft, center, shells[piece.layer - 1]) : 0.0) -
                     (piece.is_outer() ? necks.of_sphere[sphere] : 0.0);
   }
   for (const double volume : necks.of_neck) {
@@ -105,8 +120,8 @@ void state(SurfaceDraft& draft) {
   statement.meshed_fluid_volume = six / 6;
   const ContactReport& contacts = draft.solids.contacts;
   const bool is_capped = contacts.treatment == ContactTreatment::cap;
-  statement.fluid_volume = volume_of(draft.solids.domain) -
-                           (is_capped ? contacts.volume_after : volume_of_balls(draft.solids.spheres));
+  statement.fluid_volume =
+      volume_of(draft.solids.domain) - (is_capped ? contacts.volume_after : volume_of_spheres(draft));
   if (is_capped) statement.contact_area = contacts.contact_area;
   std::vector<char> counted(made.necks.size(), 0);
   for (const DraftNeck& neck : draft.necks)

@@ -88,13 +88,13 @@ struct DraftNeck {
 /// A surface in the making.
 struct SurfaceDraft {
   SurfaceDraft(const Solids& given, const SurfaceMeshOptions& asked)
-      : solids(given), options(asked), boundary(boundary_of<3>(given.domain)), sizes(given, asked) {
+      : solids(given), options(asked), boundary(ends_of(given)), sizes(given, asked) {
     for (const Piece& piece : solids.pieces) add_piece({piece});
   }
 
   const Solids& solids;
   const SurfaceMeshOptions& options;
-  Boundary<3> boundary;
+  Boundary<3> boundary;  ///< the ends of periods, or of a box that is cut out
   MeshSizes sizes;
   std::vector<DraftPiece> pieces = {};
   std::vector<DraftNeck> necks = {};
@@ -135,6 +135,14 @@ struct SurfaceDraft {
     }
     return entry->second;
   }
+  /// Whether what is at this end is copied from the opposite end of a period.
+  bool is_lifted(int face) const { return face % 2 == 1 && !solids.is_cut; }
+  double end_at(int face) const {
+    return boundary.origin[face / 2] + (face % 2 == 1 ? boundary.edges[face / 2] : 0.0);
+  }
+  SurfacePatch::Kind kind_of_ends() const {
+    return solids.is_cut ? SurfacePatch::Kind::wall : SurfacePatch::Kind::period_end;
+  }
   std::uint32_t add_patch(const SurfacePatch& patch) {
     made.patches.push_back(patch);
     return static_cast<std::uint32_t>(made.patches.size() - 1);
@@ -164,6 +172,12 @@ struct SurfaceDraft {
   }
 
  private:
+  static Boundary<3> ends_of(const Solids& of) {
+    if (!of.is_cut) return boundary_of<3>(of.domain);
+    const Box& box = std::get<Box>(of.domain);
+    return {.edges = box.size, .origin = box.corner};
+  }
+
   std::map<std::tuple<std::uint32_t, std::array<int, 3>, std::uint32_t>, std::uint32_t> numbers_;
   std::map<std::array<double, 3>, std::uint32_t> at_;
   std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 3> lifted_;

@@ -50,7 +50,7 @@ bool is_in_neck(const DraftNeck& neck, const Vector<3>& p) {
 
 class BoxWalls {
  public:
-  BoxWalls(SurfaceDraft& draft, const Box& box) : draft_(draft) {
+  BoxWalls(SurfaceDraft& draft, const Box& box) : draft_(draft), is_cut_(draft.solids.is_cut) {
     for (int k = 0; k < 3; ++k) {
       repeats_[k] = box.repeats(k);
       ends_[0][k] = box.corner[k];
@@ -67,6 +67,7 @@ class BoxWalls {
   }
 
  private:
+  bool cuts_spheres(int axis) const { return repeats_[static_cast<std::size_t>(axis)] || is_cut_; }
   std::vector<std::vector<std::uint32_t>>& line(int m, int a, int b) {
     return lines_[static_cast<std::size_t>(4 * m + 2 * b + a)];
   }
@@ -90,8 +91,8 @@ class BoxWalls {
       return at;
     };
     const auto size = [&](double x) {
-      return std::min(draft_.sizes.on_wall(point(x), Vector<3>::Unit(k), repeats_[k]),
-                      draft_.sizes.on_wall(point(x), Vector<3>::Unit(l), repeats_[l]));
+      return std::min(draft_.sizes.on_wall(point(x), Vector<3>::Unit(k), cuts_spheres(k)),
+                      draft_.sizes.on_wall(point(x), Vector<3>::Unit(l), cuts_spheres(l)));
     };
     // Where spheres cross it.
     std::set<std::pair<double, std::uint32_t>> crossings;
@@ -103,10 +104,10 @@ class BoxWalls {
           for (const std::uint32_t id : {trace.ids.front(), trace.ids.back()})
             if (const Vector<3>& p = draft_.made.vertices[id]; p[l] == at[l]) crossings.insert({p[m], id});
         }
-    if (repeats_[k] && repeats_[l])
+    if (cuts_spheres(k) && cuts_spheres(l))
       for (const DraftPiece& piece : draft_.pieces)
         for (const Circle& circle : piece.circles) {
-          if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != 2 * k ||
+          if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != 2 * k + a ||
               circle.is_whole)
             continue;
           for (const auto& chain : circle.chains)
@@ -158,11 +159,12 @@ class BoxWalls {
       for (const auto& chain : line(v, side, s)) part.add_chain(chain, false);
     }
     const auto face = static_cast<std::uint32_t>(2 * k + side);
-    add_circles_of(draft_, face, repeats_[k], false, part);
+    add_circles_of(draft_, face, cuts_spheres(k), false, part);
     const auto kind = repeats_[k] ? SurfacePatch::Kind::period_end : SurfacePatch::Kind::wall;
     const std::uint32_t patch = draft_.add_patch({kind, face, {0, SurfacePatch::nothing}});
-    part.mesh(patch, side == 0,
-              [&](const Vector<3>& p) { return draft_.sizes.on_wall(p, Vector<3>::Unit(k), repeats_[k]); });
+    part.mesh(patch, side == 0, [&](const Vector<3>& p) {
+      return draft_.sizes.on_wall(p, Vector<3>::Unit(k), cuts_spheres(k));
+    });
     if (!repeats_[k]) return;
     const std::uint32_t opposite = draft_.add_patch({kind, face + 1, {0, SurfacePatch::nothing}});
     for (const FaceCorners& t : part.triangles())
@@ -170,6 +172,7 @@ class BoxWalls {
   }
 
   SurfaceDraft& draft_;
+  bool is_cut_;  ///< whether faces cut spheres without being ends of periods
   std::array<bool, 3> repeats_{};
   std::array<Vector<3>, 2> ends_;
   std::array<std::vector<std::vector<std::uint32_t>>, 12> lines_;

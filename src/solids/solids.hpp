@@ -43,6 +43,8 @@ struct Solids {
   double end_distance = 0;
   double bridge_radius = 0;  ///< as asked for, over the radius of the smaller sphere
   Shells shells = {};        ///< which shrink as their spheres do
+  /// Whether the domain is a box cut out of a packing: without periods, and its faces cut spheres.
+  bool is_cut = false;
 };
 
 struct SolidsOptions {

@@ -104,6 +104,16 @@ TEST(MeshCommand, LayersAreRegionsOfTheStatedVolumes) {
   EXPECT_NEAR(groups["layer_core"]["stated_volume"].get<double>(), ball * 0.9 * 0.9 * 0.9, 1e-9);
   EXPECT_TRUE(fs::exists(folder / "rve.inp"));
   EXPECT_EQ(mesh({})["groups"].size(), 1U);  // the fluid alone
+  const auto part = mesh({"--regions", "all", "--cut", "x = 1..4, y = 0 mm..3 mm, z = 2..4"});
+  EXPECT_NEAR(part["domain_volume"].get<double>(), 18, 1e-12);
+  EXPECT_GT(part["clipped"], 0);
+  double stated = 0;
+  for (const auto& group : part["groups"]) stated += group["stated_volume"].get<double>();
+  EXPECT_NEAR(stated, 18, 1e-9);
+  for (const char* box : {"x = 1..4", "x = 1..4, x = 1..4, z = 2..4", "x + y = 1..4, y = 0..3, z = 2..4"})
+    expect_refused_in_one_line(bernal({"mesh", folder / "out", "--to", "gmsh", "-o", folder / "a.msh",
+                                       "--contact", "gap", "--cut", box}),
+                               {"cut"});
 }
 
 TEST(MeshCommand, RefusesWhatItCannotWrite) {

@@ -12,7 +12,7 @@
 #include "meshes/mesh_quality.hpp"
 #include "meshes/second_order.hpp"
 #include "process/find_program.hpp"
-#include "solids/solids.hpp"
+#include "solids/cut_out.hpp"
 
 namespace bernal {
 namespace layer_mesh_test {
@@ -148,6 +148,57 @@ TEST(LayerMesh, ErrorsOfSecondOrderFallWithTheFourthPowerOfEdges) {
     before = error;
   }
   EXPECT_LT(before, 2e-5);
+}
+
+TEST(CutOut, BoxesHoldTheVolumesOfPartsOfBalls) {
+  const Bounds<3> box{.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(2, 3, 4)};
+  EXPECT_NEAR(volume_in_box(Vector<3>(1, 1, 2), 0.5, box), ball(0.5), 1e-13);
+  EXPECT_NEAR(volume_in_box(Vector<3>(0, 1, 2), 0.5, box), ball(0.5) / 2, 1e-13);
+  EXPECT_NEAR(volume_in_box(Vector<3>(0, 3, 2), 0.5, box), ball(0.5) / 4, 1e-13);
+  EXPECT_NEAR(volume_in_box(Vector<3>(-0.3, 1, 2), 0.5, box), cap_volume(0.5, 0.2), 1e-13);
+}
+
+TEST(CutOut, FacesOfABoxCutSpheresAndLayers) {
+  NEEDS_TETGEN();
+  const Domain period = periodic_box(Vector<3>(5, 5.5, 6));
+  const Spheres<dynamic> spheres = scattered(period, 1, 3000, 5);
+  const Solids whole = solids_of(
+      spheres, period, {.contact = ContactTreatment::gap, .gap = 0.01, .shells = shells_in(spheres, {0.9})});
+  // More than a period along one axis.
+  const CutOut part = cut_out(whole, {.lower = Vector<3>(1, 1, 1), .upper = Vector<3>(7, 4, 4.5)}, 0.01);
+  ASSERT_EQ(part.of_packing.size(), part.solids.spheres.size());
+  EXPECT_GT(part.solids.spheres.size(), 8u);
+  for (const bool with_solids : {false, true}) {
+    const ConformingSurface surface = conforming_surface(part.solids, {.per_gap = 4, .solids = with_solids});
+    FillReport report;
+    VolumeMesh mesh = fill_with_layers(surface, {}, report);
+    EXPECT_GT(quality_of(mesh).least_sicn, 0.05);
+    make_second_order(mesh);
+    const std::vector<double> volumes = curved_volumes_of_regions(mesh);
+    double stated_sum = 0, sum = 0;
+    for (std::size_t r = 0; r < volumes.size(); ++r) {
+      stated_sum += *mesh.regions[r].volume;
+      sum += volumes[r];
+      EXPECT_NEAR(volumes[r], *mesh.regions[r].volume, 2e-3 * *mesh.regions[r].volume + 2e-4) << r;
+    }
+    if (!with_solids) continue;
+    EXPECT_NEAR(sum, 6 * 3 * 3.5, 1e-9);
+    EXPECT_NEAR(stated_sum, 6 * 3 * 3.5, 1e-9);
+  }
+}
+
+TEST(CutOut, RefusesBoxesBeyondWallsAndBridges) {
+  Spheres<dynamic> spheres(3);
+  spheres.push_back(Vector<3>(1, 1, 1), 1);
+  const Domain box = Box{.size = Vector<3>(4, 4, 4)};
+  const Bounds<3> inside{.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(1.2, 2, 4)};
+  const Bounds<3> beyond{.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(1.2, 2, 5)};
+  const auto solids = [&](ContactTreatment contact) {
+    return solids_of(spheres, box, {.contact = contact, .gap = 0.01});
+  };
+  EXPECT_EQ(cut_out(solids(ContactTreatment::gap), inside, 0.01).solids.pieces.size(), 1u);
+  EXPECT_THROW(cut_out(solids(ContactTreatment::gap), beyond, 0.01), Error);
+  EXPECT_THROW(cut_out(solids(ContactTreatment::bridge), inside, 0.01), Error);
 }
 
 TEST(LayerMesh, BridgesLeaveInnerLayersWhole) {

@@ -37,6 +37,7 @@ struct MeshFileOptions {
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
   double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
+  std::string cut = {};        ///< the part that is meshed, as `box_in` takes it; all of it if empty
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
   int order = 1;               ///< 2: with middles of edges, on the true spheres
 };
@@ -47,10 +48,11 @@ struct MeshKey {
   std::string what;         ///< with its default
   std::string placeholder;  ///< of its value: "SHARE"
   std::variant<double MeshFileOptions::*, int MeshFileOptions::*, bool MeshFileOptions::*,
-               ContactTreatment MeshFileOptions::*>
+               ContactTreatment MeshFileOptions::*, std::string MeshFileOptions::*>
       to;
   double least = 0, most = 0;           ///< of a number
-  std::vector<std::string> words = {};  ///< else what it may be: of a flag the word for false first
+  std::vector<std::string> words = {};  ///< else what it may be: of a flag the word for false first; of a
+                                        ///< text none
 };
 /// All of them, in the order in which users see them.
 const std::vector<MeshKey>& mesh_keys();
@@ -68,6 +70,8 @@ struct BedMeshReport {
   Vector<3> place_of_least_angle = Vector<3>::Zero();
   std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
+  std::size_t clipped = 0;        ///< spheres that the faces of a box cut out of the packing clip
+  std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
 
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
