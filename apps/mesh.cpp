@@ -35,6 +35,9 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for", grouped(report.shrunk_necks));
   if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
+  if (report.gaps_at_edges > 0)
+    fmt::print("; {} with a gap instead, at walls where no bridge fits into a flat part",
+               grouped(report.gaps_at_edges));
   fmt::print("\nsurface      {} triangles, least edge {:.4g} {}, least angle {:.2f} degrees near {}\n",
              grouped(report.triangles), report.least_edge, unit, report.least_triangle_angle,
              text_of_place(report.place_of_least_angle));

@@ -13,6 +13,7 @@
 #include "mesh_files/mesh_file.hpp"
 #include "meshes/conforming_surface.hpp"
 #include "meshes/fill_layers.hpp"
+#include "meshes/flat_walls.hpp"
 #include "meshes/mesh_quality.hpp"
 #include "meshes/second_order.hpp"
 #include "result/free_places.hpp"
@@ -129,12 +130,14 @@ struct SolidsToMesh {
 };
 SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
                             BedMeshReport& report) {
-  Solids solids = solids_of(packing.spheres, packing.domain,
-                            {.contact = options.contact,
-                             .gap = options.gap,
-                             .bridge_radius = options.bridge_radius,
-                             .shells = shells_of(packing, options)},
-                            monitor);
+  SolidsInWalls in_walls = solids_in_walls(packing.spheres, packing.domain,
+                                           {.contact = options.contact,
+                                            .gap = options.gap,
+                                            .bridge_radius = options.bridge_radius,
+                                            .shells = shells_of(packing, options)},
+                                           options.neck_edge, monitor);
+  report.gaps_at_edges = in_walls.gaps_at_edges;
+  Solids& solids = in_walls.solids;
   if (options.cut.empty()) return {std::move(solids), {}};
   CutOut part = cut_out(solids, box_in(options.cut, packing.scene.unit), options.gap);
   if (part.solids.spheres.empty()) refuse("there are no spheres in the box of ‹cut›");

@@ -11,6 +11,7 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"spheres", report.spheres},
             {"necks", report.necks},
             {"shrunk_necks", report.shrunk_necks},
+            {"gaps_at_edges", report.gaps_at_edges},
             {"widened_necks", report.widened_necks},
             {"clipped", report.clipped},
             {"cleared", report.cleared},

@@ -55,12 +55,15 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
   const auto* box = std::get_if<Box>(&solids.domain);
   const auto* cylinder = std::get_if<Cylinder>(&solids.domain);
   const auto* sphere = std::get_if<Sphere>(&solids.domain);
-  if ((box == nullptr && cylinder == nullptr && sphere == nullptr) || solids.spheres.dimension() != 3)
-    throw Error(
-        ErrorCode::bad_argument,
-        fmt::format("meshes are made in boxes, cylinders and spheres of three dimensions, not in a {}",
-                    name_of(solids.domain)));
+  const auto* mesh = std::get_if<Mesh>(&solids.domain);
+  if ((box == nullptr && cylinder == nullptr && sphere == nullptr && mesh == nullptr) ||
+      solids.spheres.dimension() != 3 || (mesh != nullptr && mesh->inset != 0))
+    throw Error(ErrorCode::bad_argument,
+                fmt::format("meshes are made in boxes, cylinders, spheres and CAD parts of three dimensions, "
+                            "not in a {}",
+                            name_of(solids.domain)));
   SurfaceDraft draft(solids, options);
+  if (mesh != nullptr) draft.flat_walls = flat_walls_of(*mesh);
   add_necks(draft);
   if (options.solids) add_shells(draft);
   add_circles(draft);
@@ -73,6 +76,8 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
     mesh_box(draft, *box);
   } else if (cylinder != nullptr) {
     mesh_cylinder(draft, *cylinder);
+  } else if (mesh != nullptr) {
+    mesh_flat_walls(draft, *mesh);
   } else {
     mesh_ball(draft, *sphere);
   }

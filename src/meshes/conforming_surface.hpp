@@ -20,7 +20,7 @@ struct SurfacePatch {
     neck,      ///< index: its place in `ConformingSurface::necks`, the same for images
     cut_face,  ///< the flat face of a cap, or where a neck begins inside a sphere; index: the sphere's
     wall,  ///< index: 0 to 5 of a box as Cut::face; of a cylinder 0 its side, 1 its floor, 2 its lid; 0 of a
-           ///< sphere
+           ///< sphere; of a mesh its planar part
     period_end,  ///< index: Cut::face
     layer,       ///< the sphere on which a layer begins that is not the innermost; index: the sphere's
   };
@@ -104,7 +104,11 @@ struct SurfaceMeshOptions {
 /// of periods with the same points. Vertices lie on the true surfaces to rounding, so triangles of spheres
 /// that do not overlap do not cross. The same for any number of threads.
 ///
-/// Precondition: solids of three dimensions in a box, a cylinder, both periodic or not, or a sphere. Throws
+/// Walls of a mesh are divided into their planar parts, see `FlatWalls`, of which each is triangulated anew:
+/// the volume within them stays what it is.
+///
+/// Precondition: solids of three dimensions in a box, a cylinder, both periodic or not, a sphere, or a mesh
+/// without an inset in which bridges have room, see `solids_in_walls`. Throws
 /// Error{bad_argument} with one line for other domains and for what it cannot make, Cancelled. Cost: O(N),
 /// some milliseconds and some hundred vertices a sphere.
 ConformingSurface conforming_surface(const Solids&, const SurfaceMeshOptions&, const Monitor& monitor = {});

@@ -57,6 +57,10 @@ bool Delaunay::is_left(std::uint32_t a, std::uint32_t b, const Whole& p) const {
                                      : orientation_in_plane(whole_[a], whole_[b], p) > 0;
 }
 
+int Delaunay::side_of(std::uint32_t a, std::uint32_t b, std::uint32_t point) const {
+  return orientation_in_plane(whole_[a], whole_[b], whole_[point]);
+}
+
 bool Delaunay::sees(const Face& f, const Whole& p) const {
   for (std::size_t k = 0; k < 3; ++k)
     if (f.corners[k] == beyond) {
@@ -262,21 +266,38 @@ void Delaunay::move(std::uint32_t point, const Vector<3>& to) {
   whole_[point] = on_grid(to);
 }
 
+/// Whether the two triangles at an edge make a quadrilateral that the other diagonal may divide.
+bool Delaunay::is_convex_about(std::uint32_t face, std::size_t edge) const {
+  const Face &f = faces_[face], &g = faces_[f.beside[edge]];
+  if (!is_finite(f) || !is_finite(g)) return false;
+  const std::uint32_t a = f.corners[edge], b = f.corners[(edge + 1) % 3], c = f.corners[(edge + 2) % 3];
+  std::uint32_t d = g.corners[0];
+  for (const std::uint32_t corner : g.corners)
+    if (corner != a && corner != b) d = corner;
+  return runs_counterclockwise(points_[a], points_[d], points_[c]) &&
+         runs_counterclockwise(points_[d], points_[b], points_[c]);
+}
+
 bool Delaunay::flip(std::uint32_t face, std::size_t edge) {
+  const Face& f = faces_[face];
+  if (f.bound[edge] || !is_convex_about(face, edge)) return false;
+  std::uint32_t d = f.corners[0];
+  for (const std::uint32_t corner : faces_[f.beside[edge]].corners)
+    if (corner != f.corners[edge] && corner != f.corners[(edge + 1) % 3]) d = corner;
+  if (!sees(f, whole_[d])) return false;
+  swap_diagonal(face, edge);
+  return true;
+}
+
+/// Precondition: `is_convex_about`.
+void Delaunay::swap_diagonal(std::uint32_t face, std::size_t edge) {
   Face& f = faces_[face];
-  if (f.bound[edge]) return false;
   const std::uint32_t other = f.beside[edge];
   Face& g = faces_[other];
-  if (!is_finite(f) || !is_finite(g)) return false;
   std::size_t l = 0;
   while (g.beside[l] != face || g.corners[l] != f.corners[(edge + 1) % 3]) ++l;
   const std::size_t k1 = (edge + 1) % 3, k2 = (edge + 2) % 3, l1 = (l + 1) % 3, l2 = (l + 2) % 3;
   const std::uint32_t a = f.corners[edge], b = f.corners[k1], c = f.corners[k2], d = g.corners[l2];
-  if (!sees(f, whole_[d])) return false;
-  // Seen as a quadrilateral that is not convex: the flip would fold it.
-  if (!runs_counterclockwise(points_[a], points_[d], points_[c]) ||
-      !runs_counterclockwise(points_[d], points_[b], points_[c]))
-    return false;
   const Face before_f = f, before_g = g;
   f.corners = {a, d, c};
   f.beside = {before_g.beside[l1], other, before_f.beside[k2]};
@@ -293,7 +314,6 @@ bool Delaunay::flip(std::uint32_t face, std::size_t edge) {
   relink(g.beside[1], b, c, other);
   ++f.stamp;
   ++g.stamp;
-  return true;
 }
 
 void Delaunay::restore() {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "bernal/core/vector.hpp"
@@ -63,6 +64,10 @@ class Delaunay {
   }
   /// Binds edges; false if one of them is no edge of the triangulation.
   bool bind(std::span<const std::array<std::uint32_t, 2>> edges);
+  /// In the plane: lets edges that the triangulation lacks take the place of those that they cross, by flips,
+  /// and binds them all; other edges become Delaunay again (Sloan 1993). False if an edge passes through a
+  /// point or crosses a bound one.
+  bool recover(std::span<const std::array<std::uint32_t, 2>> edges);
   /// Moves a point a little; the triangles stay what they are until `restore`.
   void move(std::uint32_t point, const Vector<3>& to);
   /// Flips edges that are not bound until all triangles have empty circumcircles again.
@@ -83,6 +88,12 @@ class Delaunay {
   std::uint32_t fill_cavity(const Vector<3>& point, std::uint32_t as);
   bool make_first(std::span<const Vector<3>> points, std::array<std::size_t, 4>& used);
   bool flip(std::uint32_t face, std::size_t edge);
+  void swap_diagonal(std::uint32_t face, std::size_t edge);
+  bool is_convex_about(std::uint32_t face, std::size_t edge) const;
+  /// In the plane: 1 where the point is on the left of the line from a to b, -1 on the right, 0 on it.
+  int side_of(std::uint32_t a, std::uint32_t b, std::uint32_t point) const;
+  bool recover(std::uint32_t from, std::uint32_t to);
+  std::pair<std::uint32_t, std::size_t> face_at(std::uint32_t a, std::uint32_t b) const;
 
   Surface surface_;
   double extent_;

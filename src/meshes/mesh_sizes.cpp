@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bernal/cad/mesh_container.hpp"
+
 namespace bernal {
 namespace {
 
@@ -44,7 +46,11 @@ MeshSizes::MeshSizes(const Solids& solids, const SurfaceMeshOptions& options)
       spheres_(solids.spheres.in<3>()),
       grid_(spheres_, boundary_, 2 * largest_of(solids.spheres.r)),
       largest_(largest_of(solids.spheres.r)),
-      has_necks_(solids.contacts.treatment == ContactTreatment::bridge) {}
+      has_necks_(solids.contacts.treatment == ContactTreatment::bridge) {
+  if (!std::holds_alternative<Mesh>(solids.domain)) return;
+  container_ = local_container(solids.domain, nullptr);
+  frame_ = frame_of(solids.domain);
+}
 
 std::vector<NearBall> MeshSizes::near(const Vector<3>& center, std::uint32_t sphere) const {
   std::vector<NearBall> found;
@@ -81,6 +87,8 @@ double MeshSizes::from_walls(const Vector<3>& p) const {
     if (!cylinder->periodic) least = std::min({least, z, cylinder->height - z});
   } else if (const auto* sphere = std::get_if<Sphere>(&solids_.domain)) {
     least = sphere->radius - (p - sphere->center).norm();
+  } else if (container_) {
+    least = frame_.scale * container_->clearance(frame_.to_local(p));
   }
   return least;
 }

@@ -1,7 +1,9 @@
 #pragma once
 #include <functional>
+#include <memory>
 #include <vector>
 
+#include "bernal/domain/container.hpp"
 #include "meshes/conforming_surface.hpp"
 #include "near/point_grid.hpp"
 
@@ -40,6 +42,8 @@ class MeshSizes {
   std::size_t neck_count(double radius, double least_sphere, double height) const;
 
   double largest_radius() const { return largest_; }
+  /// The walls of a mesh, in its own frame; null for other domains.
+  const std::shared_ptr<const Container>& container() const { return container_; }
 
  private:
   /// No edges are shorter for the sake of a contact with this gap between surfaces; 0 if it is not treated.
@@ -53,6 +57,8 @@ class MeshSizes {
   PointGrid<3> grid_;
   double largest_;
   bool has_necks_;
+  std::shared_ptr<const Container> container_;
+  Frame frame_;
 };
 
 }  // namespace bernal

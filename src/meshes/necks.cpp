@@ -27,6 +27,7 @@ struct NeckBond {
   Vector<3> axis = Vector<3>::UnitZ();
   double distance = 0;
   double asked = 0, radius = 0;
+  double room = std::numeric_limits<double>::infinity();  ///< for the radius, on the wall
 };
 
 class Necks {
@@ -42,6 +43,8 @@ class Necks {
     at_walls();
     for (NeckBond& bond : bonds_) bond.radius = clear_of_ends(bond, bond.asked, wider);
     limit_.assign(bonds_.size(), std::numeric_limits<double>::infinity());
+    for (std::uint32_t b = 0; b < bonds_.size(); ++b)
+      if (bonds_[b].room < bonds_[b].radius) narrow(b, bonds_[b].room);
     keep_apart_on_spheres();
     for (std::uint32_t b = 0; b < bonds_.size(); ++b) keep_from_others(b);
     for (std::uint32_t b = 0; b < bonds_.size(); ++b) finish(b);
@@ -97,6 +100,7 @@ class Necks {
 
   void at_walls() {
     if (solids_.contacts.treatment != ContactTreatment::bridge) return;
+    if (draft_.flat_walls) return at_flat_walls();
     for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
       const double r = spheres_.r[i];
       for (const WallView& view : walls_around(solids_.domain, spheres_.center(i))) {
@@ -106,6 +110,24 @@ class Necks {
                           .axis = view.outward,
                           .distance = view.distance,
                           .asked = solids_.bridge_radius * r});
+      }
+    }
+  }
+
+  void at_flat_walls() {
+    const FlatWalls& walls = *draft_.flat_walls;
+    const FlatFeet feet(std::get<Mesh>(solids_.domain), walls, draft_.sizes.container());
+    for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+      const double r = spheres_.r[i], asked = solids_.bridge_radius * r;
+      const Vector<3> c = spheres_.center(i);
+      for (const FlatFeet::Foot& foot : feet.near(c, r, (1 + solids_.contacts.gap) * r)) {
+        const FlatPart& part = walls.parts[foot.part];
+        bonds_.push_back({.spheres = {i, i},
+                          .wall = foot.part,
+                          .axis = part.outward,
+                          .distance = (part.origin - c).dot(part.outward),
+                          .asked = asked,
+                          .room = FlatFeet::radius_in(foot, asked, draft_.options.neck_edge * r)});
       }
     }
   }

@@ -44,7 +44,9 @@ class Mesher {
     std::vector<std::array<std::uint32_t, 2>> edges = patch_.edges;
     if (patch_.period > 0) copy_strip(points, edges);
     if (!delaunay_.begin(points)) fail("points coincide");
-    if (!delaunay_.bind(edges)) fail("an edge of the boundary is crossed");
+    const bool is_plane = !on_sphere() && !(patch_.period > 0);
+    if (is_plane ? !delaunay_.recover(edges) : !delaunay_.bind(edges))
+      fail("an edge of the boundary is crossed");
     label();
     refine();
     smooth();

@@ -35,7 +35,8 @@ struct PatchMesh {
 /// least 27 degrees where the boundary leaves room (Chew 1993, Ruppert 1995: circumcentres are inserted, here
 /// never where they would come near the boundary, then points are moved to the middle of their neighbours as
 /// long as the least angle grows). Throws Error{bad_argument} if a part of the boundary is missing in the
-/// triangulation of its points, which are then too near to each other for the size of its edges.
+/// triangulation of its points, which are then too near to each other for the size of its edges (in the
+/// plane: if such parts cross).
 PatchMesh mesh_patch(const BoundedPart&);
 
 /// Its corners, on the unit sphere: points to begin with.

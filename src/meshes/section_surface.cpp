@@ -11,8 +11,34 @@ namespace {
 
 using Kind = SurfacePatch::Kind;
 
-/// Closed chains of edges, of which as many begin as end at each vertex; each ends where it begins.
-std::vector<std::vector<std::uint32_t>> chains_of(const std::vector<std::array<std::uint32_t, 2>>& edges) {
+/// Edges that one triangle alone has, of the patches that are meant, as that one runs.
+std::vector<DirectedEdge> edges_of_one_triangle(const ConformingSurface& surface,
+                                                const std::function<bool(std::uint32_t patch)>& is_meant) {
+  struct Side {
+    DirectedEdge low_high;
+    bool is_upwards;
+  };
+  std::vector<Side> sides;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3 && is_meant(surface.patch[t]); ++k) {
+      const std::uint32_t from = surface.triangles[t][k], to = surface.triangles[t][(k + 1) % 3];
+      sides.push_back({{std::min(from, to), std::max(from, to)}, from < to});
+    }
+  std::ranges::sort(sides, {}, &Side::low_high);
+  std::vector<DirectedEdge> found;
+  for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
+    while (next < sides.size() && sides[next].low_high == sides[i].low_high) ++next;
+    const auto [low, high] = sides[i].low_high;
+    if (next == i + 1)
+      found.push_back(sides[i].is_upwards ? DirectedEdge{low, high} : DirectedEdge{high, low});
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+/// Closed chains of edges in ascending order, of which as many begin as end at each vertex; each ends where
+/// it begins.
+std::vector<std::vector<std::uint32_t>> chains_of(const std::vector<DirectedEdge>& edges) {
   std::vector<std::vector<std::uint32_t>> chains;
   std::vector<std::uint8_t> used(edges.size(), 0);
   const auto next_from = [&](std::uint32_t vertex) {
@@ -45,11 +71,16 @@ void SurfaceParts::Range::take(const Range& other) {
 
 SurfaceParts::SurfaceParts(const ConformingSurface& surface, int axis) : surface_(surface), axis_(axis) {
   find_pieces();
+  holes_ = chains_of(edges_of_one_triangle(surface, [&](std::uint32_t patch) { return is_wall(patch); }));
+  is_on_wall_.assign(surface.vertices.size(), 0);
   std::vector<Range> extent(surface.patches.size(), {std::numeric_limits<double>::infinity(),
                                                      -std::numeric_limits<double>::infinity()});
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const std::uint32_t patch = surface.patch[t];
-    if (is_wall(patch)) continue;
+    if (is_wall(patch)) {
+      for (const std::uint32_t corner : surface.triangles[t]) is_on_wall_[corner] = 1;
+      continue;
+    }
     const Range range = range_of(t);
     longest_edge_ = std::max(longest_edge_, range.high - range.low);
     if (!is_neck(patch)) extent[piece_[patch]].take(range);
@@ -110,6 +141,16 @@ std::vector<std::uint8_t> SurfaceParts::chosen_pieces(const Range& near) const {
   return chosen;
 }
 
+/// Where necks to spheres that are left out would begin: open edges that are not at walls.
+std::vector<DirectedEdge> SurfaceParts::rims_of(const PartBuilder& builder) const {
+  std::vector<DirectedEdge> edges = builder.open_edges(
+      [&](std::uint32_t patch) { return patch < surface_.patches.size() && !is_wall(patch); });
+  const std::vector<std::uint32_t>& vertex = builder.part().vertex;
+  std::erase_if(
+      edges, [&](const DirectedEdge& e) { return is_on_wall_[vertex[e[0]]] && is_on_wall_[vertex[e[1]]]; });
+  return edges;
+}
+
 SurfacePart SurfaceParts::near(double low, double high) const {
   const Range near{low - longest_edge_, high + longest_edge_};
   const std::vector<std::uint8_t> chosen = chosen_pieces(near);
@@ -135,58 +176,56 @@ SurfacePart SurfaceParts::near(double low, double high) const {
   }
   const auto lid = static_cast<std::uint32_t>(part.surface.patches.size());
   part.surface.patches.push_back({.kind = Kind::wall});
-  if (surface_.regions.size() == 1)  // else the spheres are filled too, and need not be closed
-    builder.close(lid, [&](std::uint32_t patch) { return patch != lid && !is_wall(patch); });
-  builder.close(lid, [](std::uint32_t) { return true; });
+  // Else the spheres are filled too, and need not be closed.
+  if (surface_.regions.size() == 1) {
+    for (const std::vector<std::uint32_t>& chain : chains_of(rims_of(builder))) builder.add_cone(chain, lid);
+    for (std::vector<std::uint32_t> hole : holes_) {
+      Range range{surface_.vertices[hole[0]][axis_], surface_.vertices[hole[0]][axis_]};
+      for (const std::uint32_t v : hole)
+        range.take({surface_.vertices[v][axis_], surface_.vertices[v][axis_]});
+      if (!range.meets(all)) continue;
+      for (std::uint32_t& v : hole) v = builder.number_of(v);
+      builder.add_cone(hole, lid);
+    }
+  }
+  for (const std::vector<std::uint32_t>& chain :
+       chains_of(builder.open_edges([](std::uint32_t) { return true; })))
+    builder.add_cone(chain, lid);
   return std::move(part);
 }
 
-void PartBuilder::add(const FaceCorners& triangle, std::uint32_t patch) {
+std::uint32_t PartBuilder::number_of(std::uint32_t vertex) {
   if (number_.empty()) number_.assign(vertices_.size(), not_of_whole);
-  FaceCorners corners{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    std::uint32_t& number = number_[triangle[k]];
-    if (number == not_of_whole) {
-      number = static_cast<std::uint32_t>(part_.vertex.size());
-      part_.vertex.push_back(triangle[k]);
-      part_.surface.vertices.push_back(vertices_[triangle[k]]);
-    }
-    corners[k] = number;
+  std::uint32_t& number = number_[vertex];
+  if (number == not_of_whole) {
+    number = static_cast<std::uint32_t>(part_.vertex.size());
+    part_.vertex.push_back(vertex);
+    part_.surface.vertices.push_back(vertices_[vertex]);
   }
+  return number;
+}
+
+void PartBuilder::add(const FaceCorners& triangle, std::uint32_t patch) {
+  FaceCorners corners{};
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = number_of(triangle[k]);
   part_.surface.triangles.push_back(corners);
   part_.surface.patch.push_back(patch);
 }
 
-void PartBuilder::close(std::uint32_t lid, const std::function<bool(std::uint32_t patch)>& is_meant) {
-  ConformingSurface& made = part_.surface;
-  struct Edge {
-    std::array<std::uint32_t, 2> low_high;
-    bool is_upwards;
-  };
-  std::vector<Edge> edges;
-  for (std::size_t t = 0; t < made.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3 && is_meant(made.patch[t]); ++k) {
-      const std::uint32_t from = made.triangles[t][k], to = made.triangles[t][(k + 1) % 3];
-      edges.push_back({{std::min(from, to), std::max(from, to)}, from < to});
-    }
-  std::ranges::sort(edges, {}, &Edge::low_high);
-  std::vector<std::array<std::uint32_t, 2>> open;
-  for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
-    while (next < edges.size() && edges[next].low_high == edges[i].low_high) ++next;
-    const auto [low, high] = edges[i].low_high;
-    if (next == i + 1) open.push_back(edges[i].is_upwards ? std::array{low, high} : std::array{high, low});
-  }
-  std::ranges::sort(open);
-  for (const std::vector<std::uint32_t>& chain : chains_of(open)) {
-    Vector<3> middle = Vector<3>::Zero();
-    for (std::size_t k = 1; k < chain.size(); ++k) middle += made.vertices[chain[k]];
-    const auto apex = static_cast<std::uint32_t>(made.vertices.size());
-    made.vertices.push_back(middle / static_cast<double>(chain.size() - 1));
-    part_.vertex.push_back(not_of_whole);
-    for (std::size_t k = 1; k < chain.size(); ++k) {
-      made.triangles.push_back({apex, chain[k], chain[k - 1]});
-      made.patch.push_back(lid);
-    }
+std::vector<DirectedEdge> PartBuilder::open_edges(
+    const std::function<bool(std::uint32_t patch)>& is_meant) const {
+  return edges_of_one_triangle(part_.surface, is_meant);
+}
+
+void PartBuilder::add_cone(const std::vector<std::uint32_t>& chain, std::uint32_t lid) {
+  Vector<3> middle = Vector<3>::Zero();
+  for (std::size_t k = 1; k < chain.size(); ++k) middle += part_.surface.vertices[chain[k]];
+  const auto apex = static_cast<std::uint32_t>(part_.surface.vertices.size());
+  part_.surface.vertices.push_back(middle / static_cast<double>(chain.size() - 1));
+  part_.vertex.push_back(not_of_whole);
+  for (std::size_t k = 1; k < chain.size(); ++k) {
+    part_.surface.triangles.push_back({apex, chain[k], chain[k - 1]});
+    part_.surface.patch.push_back(lid);
   }
 }
 

@@ -10,11 +10,35 @@ namespace bernal {
 
 constexpr std::uint32_t not_of_whole = 0xFFFFFFFF;
 
+/// From a vertex to another.
+using DirectedEdge = std::array<std::uint32_t, 2>;
+
 /// A part of a surface, with vertices of its own.
 struct SurfacePart {
   ConformingSurface surface;             ///< without statement, sizes and periods
   std::vector<std::uint32_t> vertex;     ///< of the whole, by those of the part, or `not_of_whole`
   std::vector<std::uint32_t> triangles;  ///< of the whole; the part may have others after these
+};
+
+/// Numbers vertices of a part as its triangles need them.
+class PartBuilder {
+ public:
+  /// Vertices of the whole, in which triangles are given.
+  explicit PartBuilder(const std::vector<Vector<3>>& vertices) : vertices_(vertices) {}
+  void add(const FaceCorners& triangle, std::uint32_t patch);
+  /// Of a vertex of the whole, in the part.
+  std::uint32_t number_of(std::uint32_t vertex);
+  /// Edges, in numbers of the part, that one triangle of the patches that are meant has alone.
+  std::vector<DirectedEdge> open_edges(const std::function<bool(std::uint32_t patch)>& is_meant) const;
+  /// Triangles from a closed chain of edges, in numbers of the part, to its middle.
+  void add_cone(const std::vector<std::uint32_t>& chain, std::uint32_t lid);
+  const SurfacePart& part() const { return part_; }
+  SurfacePart& part() { return part_; }
+
+ private:
+  const std::vector<Vector<3>>& vertices_;
+  std::vector<std::uint32_t> number_;
+  SurfacePart part_;
 };
 
 /// Picks parts of a surface. It holds what it needs of spheres, necks and walls; the surface outlives it.
@@ -23,8 +47,8 @@ class SurfaceParts {
   SurfaceParts(const ConformingSurface&, int axis);
 
   /// The spheres that reach into an interval along the axis or come near it, whole, with the necks between
-  /// them, and the walls beside these. Lids close spheres and necks, also where they stand on walls, and
-  /// the walls beyond all of these.
+  /// them, and the walls beside these. Lids close necks that lead to spheres left out, the holes of walls,
+  /// and the walls beyond all of these.
   SurfacePart near(double low, double high) const;
   /// The largest extent of a sphere along the axis.
   double largest_extent() const { return largest_extent_; }
@@ -40,30 +64,16 @@ class SurfaceParts {
   bool is_neck(std::uint32_t patch) const;
   void find_pieces();
   std::vector<std::uint8_t> chosen_pieces(const Range& near) const;
+  std::vector<DirectedEdge> rims_of(const PartBuilder&) const;
 
   const ConformingSurface& surface_;
   int axis_;
   std::vector<std::uint32_t> piece_;                        ///< of each patch that is no neck and no wall
   std::vector<std::uint32_t> piece_of_vertex_;              ///< `not_of_whole` on walls and inside of necks
   std::vector<std::vector<std::uint32_t>> pieces_of_neck_;  ///< by patch
+  std::vector<std::uint8_t> is_on_wall_;                    ///< of each vertex
+  std::vector<std::vector<std::uint32_t>> holes_;  ///< in walls, where necks and cut spheres stand; chains
   double largest_extent_ = 0, longest_edge_ = 0;
-};
-
-/// Numbers vertices of a part as its triangles need them.
-class PartBuilder {
- public:
-  /// Vertices of the whole, in which triangles are given.
-  explicit PartBuilder(const std::vector<Vector<3>>& vertices) : vertices_(vertices) {}
-  void add(const FaceCorners& triangle, std::uint32_t patch);
-  /// Cones over the closed chains of edges that one triangle of the patches that are meant has alone, to the
-  /// middle of each.
-  void close(std::uint32_t lid, const std::function<bool(std::uint32_t patch)>& is_meant);
-  SurfacePart& part() { return part_; }
-
- private:
-  const std::vector<Vector<3>>& vertices_;
-  std::vector<std::uint32_t> number_;
-  SurfacePart part_;
 };
 
 }  // namespace bernal

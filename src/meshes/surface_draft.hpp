@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "meshes/conforming_surface.hpp"
+#include "meshes/flat_walls.hpp"
 #include "meshes/mesh_sizes.hpp"
 #include "meshes/patch_mesh.hpp"
 
@@ -96,6 +97,7 @@ struct SurfaceDraft {
   const SurfaceMeshOptions& options;
   Boundary<3> boundary;  ///< the ends of periods, or of a box that is cut out
   MeshSizes sizes;
+  std::optional<FlatWalls> flat_walls = {};  ///< of a mesh
   std::vector<DraftPiece> pieces = {};
   std::vector<DraftNeck> necks = {};
   ConformingSurface made = {};
@@ -216,6 +218,7 @@ RoundSurface shape_of_wall(const Domain&, std::uint32_t wall);
 void mesh_box(SurfaceDraft&, const Box&);
 void mesh_cylinder(SurfaceDraft&, const Cylinder&);
 void mesh_ball(SurfaceDraft&, const Sphere&);
+void mesh_flat_walls(SurfaceDraft&, const Mesh&);
 /// A point inside a piece and not near its cuts.
 Vector<3> inner_point(const Piece&);
 /// Regions with points inside.

@@ -145,6 +145,37 @@ std::vector<std::uint8_t> vertices_at_open_edges(const ConformingSurface& surfac
   return is_open;
 }
 
+/// Whether a triangle is of a wall that stands around something in the domain, as obstacles do: what hangs
+/// together of it encloses a negative volume, the feet of bridges left out.
+std::vector<std::uint8_t> walls_around_something(const ConformingSurface& surface) {
+  const auto is_wall = [&](std::size_t t) {
+    return surface.patches[surface.patch[t]].kind == SurfacePatch::Kind::wall;
+  };
+  DisjointSets walls(surface.vertices.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (is_wall(t))
+      for (const std::size_t k : {1, 2}) walls.unite(surface.triangles[t][0], surface.triangles[t][k]);
+  struct Wall {
+    Bounds<3> bounds = Bounds<3>::of_nothing();
+    double six_volumes = 0;
+  };
+  std::map<std::uint32_t, Wall> of;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (is_wall(t))
+      for (const std::uint32_t c : surface.triangles[t]) of[walls.find(c)].bounds.add(surface.vertices[c]);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (!is_wall(t)) continue;
+    const FaceCorners& c = surface.triangles[t];
+    Wall& wall = of.at(walls.find(c[0]));
+    const Vector<3> middle = wall.bounds.center(), a = surface.vertices[c[0]] - middle;
+    wall.six_volumes += a.dot((surface.vertices[c[1]] - middle).cross(surface.vertices[c[2]] - middle));
+  }
+  std::vector<std::uint8_t> around(surface.triangles.size(), 0);
+  for (std::size_t t = 0; t < around.size(); ++t)
+    around[t] = is_wall(t) && of.at(walls.find(surface.triangles[t][0])).six_volumes < 0;
+  return around;
+}
+
 }  // namespace
 
 void write_for_tetgen(const ConformingSurface& surface, const std::vector<Vector<3>>& holes,
@@ -183,11 +214,12 @@ void write_for_tetgen(const ConformingSurface& surface, const std::vector<Vector
 
 std::vector<Vector<3>> points_of_holes(const ConformingSurface& surface) {
   constexpr double into = 0.02;  // of an edge
+  const std::vector<std::uint8_t> around_something = walls_around_something(surface);
   const auto is_hole = [&](std::size_t t) {
     const SurfacePatch& patch = surface.patches[surface.patch[t]];
-    const bool is_end =
-        patch.kind == SurfacePatch::Kind::wall || patch.kind == SurfacePatch::Kind::period_end;
-    return !is_end && std::ranges::find(patch.regions, SurfacePatch::nothing) != patch.regions.end();
+    if (patch.kind == SurfacePatch::Kind::wall) return around_something[t] != 0;
+    return patch.kind != SurfacePatch::Kind::period_end &&
+           std::ranges::find(patch.regions, SurfacePatch::nothing) != patch.regions.end();
   };
   DisjointSets parts(surface.vertices.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)

@@ -42,36 +42,48 @@ double area_around(const Mesh& mesh, const std::vector<std::uint32_t>& loop, con
 
 }  // namespace
 
-std::vector<FlatFace> flat_faces_of(const Mesh& mesh, double tolerance) {
-  const MeshTopology topology = topology_of(mesh);
+FlatGroups flat_groups_of(const Mesh& mesh, const MeshTopology& topology, double tolerance) {
   std::vector<double> area;
   for (const auto& triangle : mesh.triangles) area.push_back(doubled_area(mesh, triangle).norm());
-
-  std::vector<std::uint32_t> group(mesh.triangles.size(), no_index);
-  std::vector<FlatFace> faces;
-  std::uint32_t groups = 0;
+  FlatGroups groups{std::vector<std::uint32_t>(mesh.triangles.size(), no_index), {}};
   for (const std::uint32_t seed : largest_first(area)) {
-    if (group[seed] != no_index) continue;
+    if (groups.of_triangle[seed] != no_index) continue;
     const Vector<3> normal = doubled_area(mesh, mesh.triangles[seed]).normalized();
     const Vector<3> origin = mesh.vertices[mesh.triangles[seed][0]];
-    const std::uint32_t own = groups++;
-    std::vector<std::uint32_t> members = {seed};
-    group[seed] = own;
+    const auto own = static_cast<std::uint32_t>(groups.members.size());
+    std::vector<std::uint32_t>& members = groups.members.emplace_back(1, seed);
+    groups.of_triangle[seed] = own;
     for (std::size_t m = 0; m < members.size(); ++m)
       for (const std::uint32_t beside : topology.neighbor[members[m]]) {
-        if (beside == no_index || group[beside] != no_index) continue;
+        if (beside == no_index || groups.of_triangle[beside] != no_index) continue;
         const FaceCorners& others = mesh.triangles[beside];
         const bool in_plane = std::ranges::all_of(others, [&](std::uint32_t v) {
           return std::abs((mesh.vertices[v] - origin).dot(normal)) <= tolerance;
         });
-        if (!in_plane || doubled_area(mesh, others).dot(normal) <= 0) continue;
-        group[beside] = own;
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+          longest = std::max(longest, (mesh.vertices[others[(k + 1) % 3]] - mesh.vertices[others[k]]).norm());
+        const bool has_no_height = area[beside] <= tolerance * longest;
+        if (!in_plane || (!has_no_height && doubled_area(mesh, others).dot(normal) <= 0)) continue;
+        groups.of_triangle[beside] = own;
         members.push_back(beside);
       }
+  }
+  return groups;
+}
+
+std::vector<FlatFace> flat_faces_of(const Mesh& mesh, double tolerance) {
+  const MeshTopology topology = topology_of(mesh);
+  const FlatGroups groups = flat_groups_of(mesh, topology, tolerance);
+  std::vector<FlatFace> faces;
+  for (std::uint32_t own = 0; own < groups.members.size(); ++own) {
+    const std::vector<std::uint32_t>& members = groups.members[own];
+    const Vector<3> normal = doubled_area(mesh, mesh.triangles[members.front()]).normalized();
     std::vector<Edge> rim;
     for (const std::uint32_t t : members)
       for (std::size_t k = 0; k < 3; ++k)
-        if (const std::uint32_t beside = topology.neighbor[t][k]; beside == no_index || group[beside] != own)
+        if (const std::uint32_t beside = topology.neighbor[t][k];
+            beside == no_index || groups.of_triangle[beside] != own)
           rim.emplace_back(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
     FlatFace face{loops_of(rim)};
     const auto outline = std::ranges::max_element(

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bernal/domain/domain.hpp"
+#include "geometry/topology.hpp"
 
 namespace bernal {
 
@@ -10,6 +11,16 @@ namespace bernal {
 struct FlatFace {
   std::vector<std::vector<std::uint32_t>> loops;
 };
+
+/// Triangles of a mesh that hang together in one plane: those whose corners are at most `tolerance` off the
+/// plane of the group's largest triangle and which face its way, and beside them triangles that are no higher
+/// than the tolerance, whichever way these face.
+struct FlatGroups {
+  std::vector<std::uint32_t> of_triangle;
+  std::vector<std::vector<std::uint32_t>> members;  ///< by group; the first is the largest triangle
+};
+/// Precondition: `topology` is the mesh's. Cost: O(T log T).
+FlatGroups flat_groups_of(const Mesh&, const MeshTopology& topology, double tolerance);
 
 /// The surface of a mesh with coplanar triangles joined to polygons, so that edges made only by triangulation
 /// disappear. Corners are at most `tolerance` off the plane of their polygon's largest triangle. A region

@@ -75,7 +75,14 @@ void add_wall_caps(const Spheres<dynamic>& spheres, const Domain& domain, double
     const Vector<3> c = spheres.center(i);
     points.clear();
     container->walls_near(frame.to_local(c), (1 + gap) * r / frame.scale, points);
+    // What is beside a nearer point of the same flat wall, or behind that wall, its cap cuts off, too.
+    std::vector<const WallPoint*> taken;
     for (const WallPoint& point : points) {
+      if (std::ranges::any_of(taken, [&](const WallPoint* nearer) {
+            return (nearer->point - point.point).dot(nearer->inward) >= -8 * tolerance::roundoff;
+          }))
+        continue;
+      taken.push_back(&point);
       const Vector<3> outward = -point.inward, across = outward.unitOrthogonal();
       double depth = point.clearance * frame.scale - left - roundings_at(spheres, i);
       constexpr int rounds = 20, rim_points = 48;
@@ -254,15 +261,6 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
   return bridges;
 }
 
-/// Shells of spheres that have other radii now.
-Shells scaled(Shells shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after) {
-  if (shells.first.empty()) return shells;
-  for (std::size_t i = 0; i < before.size(); ++i)
-    for (std::size_t k = shells.first[i]; k < shells.first[i + 1]; ++k)
-      shells.radius[k] *= after.r[i] / before.r[i];
-  return shells;
-}
-
 /// The spheres, and those within them as if they were others.
 Spheres<dynamic> with_shells(const Spheres<dynamic>& spheres, const Shells& shells) {
   Spheres<dynamic> all = spheres;
@@ -272,6 +270,14 @@ Spheres<dynamic> with_shells(const Spheres<dynamic>& spheres, const Shells& shel
 }
 
 }  // namespace
+
+Shells scaled(Shells shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after) {
+  if (shells.first.empty()) return shells;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    for (std::size_t k = shells.first[i]; k < shells.first[i + 1]; ++k)
+      shells.radius[k] *= after.r[i] / before.r[i];
+  return shells;
+}
 
 double cap_volume(double radius, double height) {
   return std::numbers::pi / 3 * height * height * (3 * radius - height);

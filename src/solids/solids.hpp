@@ -31,6 +31,9 @@ struct Shells {
   }
 };
 
+/// Shells of spheres that have other radii now.
+Shells scaled(Shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after);
+
 /// The solids for a mesher: each once, cut at the ends of the periods.
 struct Solids {
   Spheres<dynamic> spheres{};  ///< after shrinking, if any; centres in the period

@@ -13,6 +13,11 @@
 #include <tbb/global_control.h>
 
 #include "bernal/core/error.hpp"
+#include "domain/revolved_surface.hpp"
+#include "geometry/changes.hpp"
+#include "meshes/flat_walls.hpp"
+#include "meshes/tetgen.hpp"
+#include "meshes/volume_mesh.hpp"
 
 namespace bernal {
 namespace conforming_surface_test {
@@ -335,6 +340,70 @@ TEST(ConformingSurface, BallsInABall) {
     EXPECT_EQ(surface.necks.size(), contact == ContactTreatment::bridge ? 2u : 0u);
     EXPECT_EQ(euler_number(surface, 0), contact == ContactTreatment::bridge ? 4 : 8);
     EXPECT_GT(surface.statement.least_angle, 18);
+  }
+}
+
+/// Volumes of all regions: what walls enclose.
+double volume_of_regions(const ConformingSurface& surface) {
+  double sum = 0;
+  for (const double volume : volumes_between(surface)) sum += volume;
+  return sum;
+}
+
+TEST(ConformingSurface, ABoxOfTrianglesIsABox) {
+  const Domain box = Box{.size = Vector<3>(4, 4, 4)};
+  const Mesh mesh = mesh_of_box(bounds_of(box));
+  for (const ContactTreatment contact :
+       {ContactTreatment::bridge, ContactTreatment::gap, ContactTreatment::cap}) {
+    const double gap = contact == ContactTreatment::bridge ? 0.01 : 0.03;
+    const ConformingSurface wanted =
+        conforming_surface(solids_in(touching(), box, contact, gap), {.solids = true});
+    const ConformingSurface surface =
+        conforming_surface(solids_in(touching(), mesh, contact, gap), {.solids = true});
+    expect_sound(surface, 0.02);
+    EXPECT_EQ(surface.necks.size(), wanted.necks.size());
+    EXPECT_NEAR(surface.statement.fluid_volume, wanted.statement.fluid_volume, 1e-9);
+    EXPECT_NEAR(surface.statement.contact_area, wanted.statement.contact_area, 1e-9);
+    EXPECT_NEAR(volume_of_regions(surface), 64, 1e-11);
+    EXPECT_GT(surface.statement.least_angle, 18);
+    EXPECT_EQ(euler_number(surface, 0), euler_number(wanted, 0));
+  }
+}
+
+TEST(ConformingSurface, CadPartsKeepTheirVolume) {
+  // A drum of 24 flat sides with a bore, whose sides are narrow, and a block in it that touches nothing.
+  const Revolved drum{.profile = {{0.4, 0}, {2.5, 0}, {2.5, 3}, {0.4, 3}}};
+  Mesh part = surface_of(drum, 24);
+  Mesh block = mesh_of_box({Vector<3>(1, -0.5, 0.2), Vector<3>(1.8, 0.4, 0.21)});
+  turn_inside_out(block);
+  append(part, block);
+  Spheres<dynamic> spheres(3);
+  spheres.push_back(Vector<3>(-1.2, 0.3, 0.5), 0.5);   // on the floor
+  spheres.push_back(Vector<3>(-1.2, 0.3, 1.5), 0.5);   // on that
+  spheres.push_back(Vector<3>(1.4, -0.1, 0.71), 0.5);  // on the block
+  const double side = 2.5 * std::cos(pi / 24) - 0.5;   // at the middle of a side, and at an edge of the bore
+  spheres.push_back(Vector<3>(side * std::cos(9 * pi / 24), side * std::sin(9 * pi / 24), 1.5), 0.5);
+  spheres.push_back(Vector<3>(0, -0.9, 1.5), 0.5);
+  for (const ContactTreatment contact :
+       {ContactTreatment::bridge, ContactTreatment::gap, ContactTreatment::cap}) {
+    const SolidsInWalls made =
+        solids_in_walls(spheres, part, {.contact = contact, .gap = 0.01, .bridge_radius = 0.2}, 0.15);
+    const ConformingSurface surface = conforming_surface(made.solids, {.solids = true});
+    expect_sound(surface, 0.02);
+    EXPECT_NEAR(volume_of_regions(surface), volume_of(Domain(part)), 1e-11);
+    EXPECT_GT(surface.statement.least_angle, 15);
+    if (contact == ContactTreatment::bridge) {
+      EXPECT_EQ(made.gaps_at_edges, 1u);
+      EXPECT_EQ(surface.necks.size(), 4u);
+    }
+    // In the fluid alone, each ball and the block are holes.
+    const ConformingSurface fluid = conforming_surface(made.solids, {});
+    expect_sound(fluid, 0.02);
+    const std::vector<Vector<3>> holes = points_of_holes(fluid);
+    const auto in_block = [](const Vector<3>& p) {
+      return p[0] > 1 && p[0] < 1.8 && p[1] > -0.5 && p[1] < 0.4 && p[2] > 0.2 && p[2] < 0.21;
+    };
+    EXPECT_TRUE(contact == ContactTreatment::bridge || std::ranges::any_of(holes, in_block));
   }
 }
 

@@ -72,6 +72,8 @@ struct BedMeshReport {
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
   std::size_t clipped = 0;        ///< spheres that the faces of a box cut out of the packing clip
   std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
+  /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
+  std::size_t gaps_at_edges = 0;
 
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
