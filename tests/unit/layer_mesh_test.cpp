@@ -179,9 +179,11 @@ TEST(CutOut, FacesOfABoxCutSpheresAndLayers) {
     for (std::size_t r = 0; r < volumes.size(); ++r) {
       stated_sum += *mesh.regions[r].volume;
       sum += volumes[r];
-      EXPECT_NEAR(volumes[r], *mesh.regions[r].volume, 2e-3 * *mesh.regions[r].volume + 2e-4) << r;
+      // Low caps end in edges too sharp for curves: they have some chords.
+      EXPECT_NEAR(volumes[r], *mesh.regions[r].volume, 1e-2 * *mesh.regions[r].volume + 3e-3) << r;
     }
     if (!with_solids) continue;
+    EXPECT_NEAR(volumes[0] / *mesh.regions[0].volume, 1, 2e-3);
     EXPECT_NEAR(sum, 6 * 3 * 3.5, 1e-9);
     EXPECT_NEAR(stated_sum, 6 * 3 * 3.5, 1e-9);
   }
