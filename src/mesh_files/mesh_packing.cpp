@@ -184,7 +184,8 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
   VolumeMesh mesh = fill_with_layers(surface, {}, filled, monitor);
-  report.parts.push_back({"fill", filled.seconds, filled.peak_bytes});
+  report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
+                          filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
   if (options.order == 2) {
     const Stopwatch curving;

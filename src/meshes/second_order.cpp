@@ -47,7 +47,12 @@ struct EdgeOnSurfaces {
   static constexpr std::size_t most = 4;
   std::array<std::uint32_t, most> triangle{};
   std::size_t count = 0;
-  bool is_round = false;
+
+  void add(const VolumeMesh& mesh, std::uint32_t t) {
+    for (std::size_t k = 0; k < count; ++k)
+      if (mesh.patch[triangle[k]] == mesh.patch[t]) return;
+    if (count < most) triangle[count++] = t;
+  }
 };
 
 using EdgesOnSurfaces = std::unordered_map<std::uint64_t, EdgeOnSurfaces>;
@@ -62,12 +67,7 @@ EdgesOnSurfaces round_edges(const VolumeMesh& mesh) {
         const std::uint64_t key = key_of_edge(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
         const auto found = is_first ? edges.try_emplace(key).first : edges.find(key);
         if (found == edges.end()) continue;
-        EdgeOnSurfaces& edge = found->second;
-        const auto end = edge.triangle.begin() + static_cast<std::ptrdiff_t>(edge.count);
-        const bool is_known = std::any_of(edge.triangle.begin(), end, [&](std::uint32_t other) {
-          return mesh.patch[other] == mesh.patch[t];
-        });
-        if (!is_known && edge.count < EdgeOnSurfaces::most) edge.triangle[edge.count++] = t;
+        found->second.add(mesh, t);
       }
     }
   return edges;
@@ -102,6 +102,19 @@ std::optional<RoundSurface> between_spheres(const VolumeMesh& mesh, std::uint32_
   RoundSurface between = one;
   between.radius = (one.radius + other.radius) / 2;
   return between;
+}
+
+/// The edges between two spheres about one centre that lie on flat triangles, with one of each patch around.
+EdgesOnSurfaces edges_across_layers(const VolumeMesh& mesh, const std::vector<std::uint32_t>& sphere) {
+  EdgesOnSurfaces edges;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.patches[mesh.patch[t]].shape.is_round()) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      if (between_spheres(mesh, sphere[a], sphere[b])) edges[key_of_edge(a, b)].add(mesh, t);
+    }
+  }
+  return edges;
 }
 
 using NumbersOfMiddles = std::unordered_map<std::uint64_t, std::uint32_t>;
@@ -281,6 +294,7 @@ double least_jacobian_coefficient(const VolumeMesh& mesh, std::size_t tetrahedro
 CurvedEdges make_second_order(VolumeMesh& mesh) {
   const EdgesOnSurfaces curved = round_edges(mesh);
   const std::vector<std::uint32_t> sphere = spheres_of_vertices(mesh);
+  const EdgesOnSurfaces across = edges_across_layers(mesh, sphere);
   CurvedEdges made;
   NumbersOfMiddles number;
   Middles middles;
@@ -308,17 +322,18 @@ CurvedEdges make_second_order(VolumeMesh& mesh) {
   for (std::size_t k = 0; k < mesh.middles.size(); ++k) {
     const auto [a, b] = middles.ends[k];
     std::vector<RoundSurface> surfaces;
-    const auto on = curved.find(key_of_edge(a, b));
-    if (on != curved.end()) {
-      for (std::size_t s = 0; s < on->second.count; ++s)
-        surfaces.push_back(surface_of(mesh, on->second.triangle[s]));
+    const auto add_all = [&](const EdgesOnSurfaces& edges) {
+      const auto on = edges.find(key_of_edge(a, b));
+      if (on == edges.end()) return false;
+      for (std::size_t t = 0; t < on->second.count; ++t)
+        surfaces.push_back(surface_of(mesh, on->second.triangle[t]));
+      return true;
+    };
+    if (add_all(curved)) {
       ++made.curved;
     } else if (const auto between = between_spheres(mesh, sphere[a], sphere[b])) {
       surfaces.push_back(*between);
-      for (int axis = 0; axis < 3; ++axis)
-        if (ends[k][static_cast<std::size_t>(axis)])
-          surfaces.push_back(
-              {.kind = RoundSurface::Kind::plane, .center = mesh.vertices[a], .axis = Vector<3>::Unit(axis)});
+      add_all(across);
     } else {
       continue;
     }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <thread>
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "bernal/core/error.hpp"
@@ -20,7 +22,7 @@ namespace bernal {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int most_meshers = 4;  // at once
+constexpr std::size_t most_meshers = 4;  // at once
 constexpr auto nothing = SurfacePatch::nothing;
 
 /// Faces of tetrahedra that were kept which lie inside of the bed. Their normals point out of these.
@@ -107,10 +109,7 @@ class SectionFiller {
   VolumeMesh run(double& peak_bytes) {
     fill_every_second(0, [&](std::size_t s) { return free_section(s); });
     fill_every_second(1, [&](std::size_t s) { return closed_section(s); });
-    const auto at_once = static_cast<std::ptrdiff_t>(std::min<std::size_t>(at_once_, peaks_.size()));
-    std::ranges::sort(peaks_, std::greater());
-    peak_bytes = 0;
-    for (auto peak = peaks_.begin(); peak != peaks_.begin() + at_once; ++peak) peak_bytes += *peak;
+    peak_bytes = peak_bytes_;
     mesh_.triangles = surface_.triangles;
     mesh_.patch = surface_.patch;
     mesh_.patches = surface_.patches;
@@ -138,8 +137,9 @@ class SectionFiller {
     std::vector<Section> made((cuts_.count() - first + 1) / 2);
     say_done();
     const std::thread::id caller = std::this_thread::get_id();
-    tbb::task_arena arena(std::min(most_meshers, tbb::this_task_arena::max_concurrency()));
-    at_once_ = static_cast<std::size_t>(arena.max_concurrency());
+    const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    const std::size_t at_once = std::min({most_meshers, threads, made.size()});
+    tbb::task_arena arena(static_cast<int>(at_once));
     arena.execute([&] {
       parallel_for(made.size(), [&](std::size_t k) {
         made[k] = fill(first + 2 * k);
@@ -147,6 +147,12 @@ class SectionFiller {
         if (std::this_thread::get_id() == caller) say_done();
       });
     });
+    std::vector<double> peaks;
+    for (const Section& section : made) peaks.push_back(section.peak_bytes);
+    std::ranges::sort(peaks, std::greater());
+    double peak_bytes = 0;
+    for (std::size_t k = 0; k < at_once; ++k) peak_bytes += peaks[k];
+    peak_bytes_ = std::max(peak_bytes_, peak_bytes);
     for (std::size_t k = 0; k < made.size(); ++k) {
       take_over(made[k], first + 2 * k);
       made[k] = {};
@@ -217,7 +223,6 @@ class SectionFiller {
   Monitor quiet() const { return {.on_progress = {}, .cancelled = monitor_.cancelled}; }
 
   void take_over(Section& section, std::size_t s) {
-    peaks_.push_back(section.peak_bytes);
     std::vector<std::uint32_t> number = section.part.vertex;
     number.resize(section.mesh.vertices.size(), not_of_whole);
     const auto numbered = [&](auto corners) {
@@ -247,8 +252,7 @@ class SectionFiller {
   VolumeMesh mesh_;
   std::vector<std::array<bool, 2>> is_filled_;  ///< of each triangle, by side
   std::vector<std::vector<FreeFace>> faces_;    ///< by section
-  std::vector<double> peaks_;
-  std::size_t at_once_ = 1;
+  double peak_bytes_ = 0;
   std::atomic<std::size_t> done_ = 0;
 };
 

@@ -55,7 +55,7 @@ TEST(CostCommand, MeshesAreAboutAsExpected) {
                  "count = 15\ndiameter = 1\n")
           .string();
   const std::string out = (folder / "out").string();
-  const Ended ended = bernal({"cost", scene, "-o", out, "--meshes", "--time", "60s", "--json", "--quiet"});
+  const Ended ended = bernal({"cost", scene, "-o", out, "--meshes", "--time", "20s", "--json", "--quiet"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   const json report = json::parse(ended.out);
   EXPECT_EQ(report["spheres"], 15);
