@@ -35,6 +35,7 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for", grouped(report.shrunk_necks));
   if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
+  if (report.deepened_caps > 0) fmt::print(", {} caps deeper than asked for", grouped(report.deepened_caps));
   if (report.gaps_at_edges > 0)
     fmt::print("; {} with a gap instead, at walls where no bridge fits into a flat part",
                grouped(report.gaps_at_edges));

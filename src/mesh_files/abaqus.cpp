@@ -65,34 +65,66 @@ void add_surfaces(const MeshToWrite& file, TextFile& out) {
   }
 }
 
-/// Every upper node of a period once, with the one that it is an image of along all axes.
-std::vector<std::array<std::uint32_t, 2>> images_of(const VolumeMesh& mesh) {
-  std::vector<std::uint32_t> lower_of(mesh.node_count());
-  for (std::uint32_t v = 0; v < lower_of.size(); ++v) lower_of[v] = v;
-  for (const auto& pairs : mesh.periodic)
-    for (const auto& [lower, upper] : pairs) lower_of[upper] = lower;
-  std::vector<std::array<std::uint32_t, 2>> images;
+/// A node at upper ends of periods, the one that it is an image of, and the axes between them.
+struct ImageNode {
+  std::uint32_t image = 0, first = 0;
+  std::array<bool, 3> along = {};
+};
+
+/// Every upper node of a period once.
+std::vector<ImageNode> images_of(const VolumeMesh& mesh) {
+  struct Lower {
+    std::uint32_t node;
+    std::size_t axis = 3;
+  };
+  std::vector<Lower> lower_of(mesh.node_count());
+  for (std::uint32_t v = 0; v < lower_of.size(); ++v) lower_of[v] = {v};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const auto& [lower, upper] : mesh.periodic[axis]) lower_of[upper] = {lower, axis};
+  std::vector<ImageNode> images;
   for (std::uint32_t v = 0; v < lower_of.size(); ++v) {
-    std::uint32_t first = v;
-    while (lower_of[first] != first) first = lower_of[first];
-    if (first != v) images.push_back({v, first});
+    ImageNode made{.image = v, .first = v};
+    while (lower_of[made.first].node != made.first) {
+      made.along[lower_of[made.first].axis] = true;
+      made.first = lower_of[made.first].node;
+    }
+    if (made.first != v) images.push_back(made);
   }
   return images;
 }
 
 constexpr std::string_view equations_ending = "_periodic.inc";
 
-/// Equations for what a user includes: equal temperatures at opposite ends.
+/// Its number in the file, after those of the mesh.
+std::size_t node_of_period(const VolumeMesh& mesh, std::size_t axis) { return mesh.node_count() + 1 + axis; }
+
+/// Equations for what a user includes. A node of its own for each period holds the difference across it.
 void write_equations(const MeshToWrite& file, StagedFolder& staged) {
   constexpr int temperature = 11;
-  const auto images = images_of(file.mesh);
+  const VolumeMesh& mesh = file.mesh;
   TextFile out(staged.add(file.name.stem().string() + std::string(equations_ending)));
-  out.add("** ", file.title,
-          "\n** Equal temperatures at opposite ends of periods; for displacements take 1, 2 "
-          "and 3 in place of 11.\n");
-  for (const auto& [image, first] : images)
-    out.add("*EQUATION\n2\n", image + 1, ", ", temperature, ", 1., ", first + 1, ", ", temperature,
-            ", -1.\n");
+  out.add(
+      "** ", file.title,
+      "\n** Temperatures at opposite ends of a period along x differ by that of the node x_period: 0 for a "
+      "field that\n** repeats itself, the period's length times the mean gradient for one that rises. Give "
+      "it "
+      "by *BOUNDARY.\n** For displacements take 1, 2 and 3 in place of 11.\n");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (mesh.periodic[axis].empty()) continue;
+    const auto& [low, high] = mesh.periodic[axis].front();
+    const Vector<3> period = mesh.node(high) - mesh.node(low);
+    out.add("*NODE, NSET=", std::string_view("xyz").substr(axis, 1), "_period\n", node_of_period(mesh, axis),
+            ", ", period[0], ", ", period[1], ", ", period[2], "\n");
+  }
+  for (const ImageNode& node : images_of(mesh)) {
+    out.add("*EQUATION\n", 2 + std::ranges::count(node.along, true), "\n", node.image + 1, ", ", temperature,
+            ", 1., ", node.first + 1, ", ", temperature, ", -1.");
+    int terms = 2;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (node.along[axis])
+        out.add(terms++ == 4 ? "\n" : ", ", node_of_period(mesh, axis), ", ", temperature, ", -1.");
+    out.add("\n");
+  }
   out.close();
 }
 

@@ -51,6 +51,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
   report.widened_necks = stated.widened_necks;
+  report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
   report.contact_area = stated.contact_area;
 }

@@ -13,6 +13,7 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"shrunk_necks", report.shrunk_necks},
             {"gaps_at_edges", report.gaps_at_edges},
             {"widened_necks", report.widened_necks},
+            {"deepened_caps", report.deepened_caps},
             {"clipped", report.clipped},
             {"cleared", report.cleared},
             {"triangles", report.triangles},

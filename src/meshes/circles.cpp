@@ -181,6 +181,8 @@ class Circles {
       if (const Circle& circle = draft_.pieces[p].circles[c]; circle.kind == Circle::Kind::neck) {
         const DraftNeck& neck = draft_.necks[circle.neck];
         size = std::min({size, neck.edge, 2 * (neck.end - neck.begin)});
+      } else if (circle.kind == Circle::Kind::contact) {
+        size = std::min(size, draft_.sizes.at_caps(draft_.pieces[p].piece.radius));
       }
     return size;
   }
@@ -353,17 +355,22 @@ class Circles {
     return angles;
   }
 
-  /// Edges on an end's or a cap's circle. Where it begins at a neck, they begin with that neck's height.
+  /// Edges on an end's or a cap's circle. Where an end's begins at a neck or cap, they begin
+  /// with the neck's height or the cap's edges.
   double size_along(std::uint32_t p, const Circle& circle, const Vector<3>& q) {
     constexpr double least_per_turn = 8, growth = 0.6;
     double size = std::min(size_at(p, q), 2 * pi / least_per_turn * circle.radius);
     const Vector<3> from = q - draft_.pieces[p].piece.center;
     for (const Circle& other : draft_.pieces[p].circles) {
-      if (other.kind != Circle::Kind::neck || !draft_.necks[other.neck].is_cut) continue;
+      double least = draft_.sizes.at_caps(draft_.pieces[p].piece.radius);
+      if (other.kind == Circle::Kind::neck && draft_.necks[other.neck].is_cut) {
+        least = draft_.necks[other.neck].end - draft_.necks[other.neck].begin;
+      } else if (other.kind != Circle::Kind::contact || circle.kind != Circle::Kind::end) {
+        continue;
+      }
       const double along = from.dot(other.normal);
       const double beside = (from - along * other.normal).norm() - other.radius;
-      const double height = draft_.necks[other.neck].end - draft_.necks[other.neck].begin;
-      size = std::min(size, height + growth * std::hypot(along - other.depth, beside));
+      size = std::min(size, least + growth * std::hypot(along - other.depth, beside));
     }
     return size;
   }

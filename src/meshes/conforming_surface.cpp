@@ -63,6 +63,7 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
                             "not in a {}",
                             name_of(solids.domain)));
   SurfaceDraft draft(solids, options);
+  deepen_caps(draft);
   if (mesh != nullptr) draft.flat_walls = flat_walls_of(*mesh);
   add_necks(draft);
   if (options.solids) add_shells(draft);

@@ -49,7 +49,7 @@ struct PrismLayers {
   bool empty() const { return tetrahedra.empty(); }
 };
 
-/// A neck as it was meshed: its radius may be smaller than asked for.
+/// A neck as it was meshed: its radius may be other than asked for.
 struct MeshedNeck {
   /// The second is absent where the neck stands on a wall.
   std::uint32_t sphere = 0;
@@ -67,6 +67,7 @@ struct SurfaceStatement {
       0;  ///< whose radius is smaller than asked for, so that others and ends of periods stay clear
   double largest_shrink = 0;      ///< over the radius asked for
   std::size_t widened_necks = 0;  ///< by up to a fifth, so that ends of periods cut them clearly
+  std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
   double fluid_volume = 0;  ///< in closed form; where caps of a sphere meet, what they share is counted twice
   double meshed_fluid_volume = 0;  ///< between the triangles
   double contact_area = 0;         ///< cross-sections of necks, flat faces of caps

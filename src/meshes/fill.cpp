@@ -41,6 +41,7 @@ VolumeMesh fill(const ConformingSurface& surface, const TetrahedraOptions& optio
   const SectionCuts cuts = section_cuts(surface, options.most_triangles);
   if (cuts.count() > 1) try {
       mesh = fill_in_sections(surface, cuts, tetgen, report.peak_bytes, monitor);
+      sides_of_triangles(mesh);
       report.sections = cuts.count();
     } catch (const Error& error) {  // lids of a section may cross walls that are not convex
       if (error.code() != ErrorCode::bad_mesh) throw;

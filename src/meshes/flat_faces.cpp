@@ -100,7 +100,9 @@ class FlatFaces {
       for (const auto& chain : within->chains) part.add_chain(chain, within->is_whole);
     for (const Chord& chord : piece.chords)
       if (chord.circles[0] == c || chord.circles[1] == c) part.add_chain(chord.ids, false);
-    part.mesh(number, false, size_in(p));
+    const double cap = draft_.sizes.at_caps(piece.piece.radius);
+    part.mesh(number, false,
+              circle.kind == Circle::Kind::contact ? [cap](const Vector<3>&) { return cap; } : size_in(p));
     if (circle.kind == Circle::Kind::end)
       lower_[{piece.piece.sphere, piece.piece.image, circle.face / 2, piece.layer}] = part.triangles();
   }

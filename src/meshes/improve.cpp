@@ -271,18 +271,25 @@ class Improver {
     return true;
   }
 
-  /// Puts a vertex into the middle of the tetrahedron and joins it to the faces around a cavity, which grows
-  /// over the neighbours behind faces that it would make poor tetrahedra with.
+  /// Puts a vertex into the middle of the tetrahedron, or else of one of its edges.
   bool insert(std::uint32_t t) {
+    const TetrahedronCorners c = near_.corners(t);
+    if (insert(t, (near_.at(c[0]) + near_.at(c[1]) + near_.at(c[2]) + near_.at(c[3])) / 4)) return true;
+    return std::ranges::any_of(edges_of_tetrahedron, [&](const auto& edge) {
+      return insert(t, 0.5 * (near_.at(c[static_cast<std::size_t>(edge[0])]) +
+                              near_.at(c[static_cast<std::size_t>(edge[1])])));
+    });
+  }
+
+  /// Joins a vertex at this place to the faces around a cavity, which grows over the neighbours behind faces
+  /// that it would make poor tetrahedra with. If not, the tetrahedron may get another number.
+  bool insert(std::uint32_t& t, const Vector<3>& place) {
     constexpr std::size_t largest_cavity = 32;
     std::vector<std::uint32_t> cavity{t};
-    const TetrahedronCorners& c = near_.corners(t);
-    Vector<3> place = Vector<3>::Zero();
-    for (const std::uint32_t vertex : c) place += near_.at(vertex) / 4;
     const std::uint32_t vertex = near_.add_vertex(place);
     std::vector<TetrahedronCorners> made, best_made;
     std::vector<std::uint32_t> best_cavity;
-    double best_gain = least_gain;
+    double best_gain = -1;
     while (cavity.size() <= largest_cavity) {
       made.clear();
       double worst = 2;
@@ -316,9 +323,19 @@ class Improver {
       near_.drop_vertex();
       return false;
     }
+    // Whether it is better shows where the vertex has found its place.
+    const double before = std::max(0.0, near_.least_quality(best_cavity));
+    std::vector<TetrahedronCorners> old;
+    for (const std::uint32_t of : best_cavity) old.push_back(near_.corners(of));
     near_.replace(best_cavity, best_made);
     smooth(vertex);
-    return true;
+    const std::vector<std::uint32_t> star = near_.star(vertex);
+    if (near_.least_quality(star) >= before + least_gain) return true;
+    near_.replace(star, old);
+    near_.drop_vertex();
+    t = *std::ranges::find_if(near_.star(old[0][0]),
+                              [&](std::uint32_t at) { return near_.corners(at) == old[0]; });
+    return false;
   }
 
   static constexpr double s = 0.57735026918962576;

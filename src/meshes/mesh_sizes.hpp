@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -40,6 +41,11 @@ class MeshSizes {
   double from_ends(const Vector<3>& p) const;
   /// Edges where a neck begins, and how many make up its circle. `height`: of the neck between its circles.
   std::size_t neck_count(double radius, double least_sphere, double height) const;
+
+  /// Edges on flat faces of caps of a sphere.
+  double at_caps(double radius) const {
+    return std::min(options_.sphere_edge * radius, 2 * options_.per_gap * solids_.contacts.gap * radius);
+  }
 
   double largest_radius() const { return largest_; }
   /// The walls of a mesh, in its own frame; null for other domains.

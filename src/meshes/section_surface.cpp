@@ -175,7 +175,7 @@ SurfacePart SurfaceParts::near(double low, double high) const {
     part.triangles.push_back(t);
   }
   const auto lid = static_cast<std::uint32_t>(part.surface.patches.size());
-  part.surface.patches.push_back({.kind = Kind::wall});
+  part.surface.patches.push_back({.kind = Kind::period_end});  // beyond which nothing is
   // Else the spheres are filled too, and need not be closed.
   if (surface_.regions.size() == 1) {
     for (const std::vector<std::uint32_t>& chain : chains_of(rims_of(builder))) builder.add_cone(chain, lid);

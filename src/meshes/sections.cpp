@@ -209,7 +209,8 @@ class SectionFiller {
             const auto [entry, is_new] = of_free_faces.try_emplace(face.region, 0);
             if (is_new) {
               entry->second = static_cast<std::uint32_t>(part.patches.size());
-              part.patches.push_back({.kind = SurfacePatch::Kind::wall, .regions = {nothing, face.region}});
+              part.patches.push_back(
+                  {.kind = SurfacePatch::Kind::period_end, .regions = {nothing, face.region}});
             }
             builder.add(face.corners, entry->second);
           }

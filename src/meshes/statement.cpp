@@ -122,7 +122,10 @@ void state(SurfaceDraft& draft) {
   const bool is_capped = contacts.treatment == ContactTreatment::cap;
   statement.fluid_volume =
       volume_of(draft.solids.domain) - (is_capped ? contacts.volume_after : volume_of_spheres(draft));
-  if (is_capped) statement.contact_area = contacts.contact_area;
+  if (is_capped) {
+    statement.contact_area = contacts.contact_area + draft.deepened.area;
+    statement.fluid_volume += draft.deepened.volume;
+  }
   std::vector<char> counted(made.necks.size(), 0);
   for (const DraftNeck& neck : draft.necks)
     if (!std::exchange(counted[neck.bond], 1)) statement.fluid_volume -= neck.volume;

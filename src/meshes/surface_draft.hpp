@@ -101,6 +101,10 @@ struct SurfaceDraft {
   std::vector<DraftPiece> pieces = {};
   std::vector<DraftNeck> necks = {};
   ConformingSurface made = {};
+  /// What caps that are deeper than the gap asks for add to the fluid, and to flat faces.
+  struct Deepened {
+    double volume = 0, area = 0;
+  } deepened = {};
 
   /// The piece that is an image of a sphere; `Delaunay::none` where that does not reach into the domain.
   /// `below`: so many layers below the surface.
@@ -185,6 +189,8 @@ struct SurfaceDraft {
   std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 3> lifted_;
 };
 
+/// Cuts caps off deeper whose circles an end of a period would nearly touch or cut at a small angle.
+void deepen_caps(SurfaceDraft&);
 /// Finds the necks between spheres and to walls, makes them narrower where others would meet them, and
 /// narrower or wider where ends of periods would nearly touch them, and puts their circles on the pieces and,
 /// where no end cuts them, points on these.

@@ -20,6 +20,68 @@ TetrahedraNear::TetrahedraNear(VolumeMesh& mesh)
       slot_(mesh.vertices.size(), none) {
   for (const FaceCorners& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle) is_fixed_[vertex] = 1;
+  const auto is_outer = [&](std::size_t t) {
+    const SurfacePatch& patch = mesh.patches[mesh.patch[t]];
+    return patch.kind != SurfacePatch::Kind::period_end &&
+           std::ranges::find(patch.regions, SurfacePatch::nothing) != patch.regions.end();
+  };
+  std::vector<FaceCorners> outside;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!is_outer(t)) continue;
+    outside.push_back(mesh.triangles[t]);
+    std::ranges::sort(outside.back());
+  }
+  std::ranges::sort(outside);
+  first_outside_.assign(mesh.vertices.size() + 1, 0);
+  for (const FaceCorners& corners : outside) {
+    ++first_outside_[corners[0] + 1];
+    outside_.push_back({corners[1], corners[2]});
+  }
+  for (std::size_t v = 1; v < first_outside_.size(); ++v) first_outside_[v] += first_outside_[v - 1];
+}
+
+bool TetrahedraNear::is_outside(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+  FaceCorners of = {a, b, c};
+  std::ranges::sort(of);
+  if (!is_fixed_[of[0]]) return false;
+  for (std::uint32_t k = first_outside_[of[0]]; k < first_outside_[of[0] + 1]; ++k)
+    if (outside_[k][0] == of[1] && outside_[k][1] == of[2]) return true;
+  return false;
+}
+
+double TetrahedraNear::determinant_of_inner_faces(const TetrahedronCorners& c) const {
+  std::array<Vector<3>, 4> areas;
+  std::size_t count = 0;
+  double mean = 0;
+  for (const auto& face : faces_of_tetrahedron) {
+    const auto [i, j, k] =
+        std::array{c[static_cast<std::size_t>(face[0])], c[static_cast<std::size_t>(face[1])],
+                   c[static_cast<std::size_t>(face[2])]};
+    if (is_outside(i, j, k)) continue;
+    areas[count] = (at(j) - at(i)).cross(at(k) - at(i));
+    mean += areas[count++].norm();
+  }
+  if (count < 3) return 0;
+  mean /= static_cast<double>(count);
+  // The determinant of a sum of n n^T is the sum of squares of all triple products.
+  double sum = 0;
+  for (std::size_t out = count == 3 ? 3 : 0; out < 4; ++out) {
+    std::array<std::size_t, 3> of{};
+    for (std::size_t k = 0, n = 0; k < 4; ++k)
+      if (k != out) of[n++] = k;
+    const double triple = areas[of[0]].cross(areas[of[1]]).dot(areas[of[2]]) / (mean * mean * mean);
+    sum += triple * triple;
+  }
+  return sum / 8;
+}
+
+double TetrahedraNear::quality(const TetrahedronCorners& c) const {
+  const double shape = sicn(at(c[0]), at(c[1]), at(c[2]), at(c[3]));
+  if (shape <= most_of_ill_posed) return shape;
+  const auto fixed = std::ranges::count_if(c, [&](std::uint32_t vertex) { return is_fixed_[vertex] != 0; });
+  constexpr double well_shaped = 0.5;  // whose four faces give more, and of which three at most lie inside
+  if (fixed < 3 && shape > well_shaped) return shape;
+  return determinant_of_inner_faces(c) < least_determinant ? most_of_ill_posed : shape;
 }
 
 void TetrahedraNear::keep_star(std::uint32_t vertex) {

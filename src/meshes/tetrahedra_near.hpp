@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,7 +30,15 @@ class TetrahedraNear {
   bool is_free(std::uint32_t vertex) const { return !is_fixed_[vertex]; }
 
   double quality(std::uint32_t t) const { return quality(corners(t)); }
-  double quality(const TetrahedronCorners& c) const { return sicn(at(c[0]), at(c[1]), at(c[2]), at(c[3])); }
+  /// The SICN, but no more than `most_of_ill_posed` where the faces inside of the mesh do not determine a
+  /// gradient from the fluxes through them: where two faces lie on the outside, or inner faces are nearly
+  /// parallel to one direction.
+  double quality(const TetrahedronCorners&) const;
+  static constexpr double most_of_ill_posed = 0.1;
+  /// Of the sum of n n^T over inner faces, n being a face's area over the mean of them, by 8, what it is for
+  /// a cube. Faces at ends of periods are inner ones. OpenFOAM's checkMesh asks for 0.001.
+  double determinant_of_inner_faces(const TetrahedronCorners&) const;
+  static constexpr double least_determinant = 0.00105;
   double least_quality(std::span<const std::uint32_t> of) const;
 
   bool has_star(std::uint32_t vertex) const { return slot_[vertex] != none; }
@@ -56,9 +65,14 @@ class TetrahedraNear {
 
  private:
   void keep_star(std::uint32_t vertex);
+  bool is_outside(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
 
   VolumeMesh& mesh_;
   std::vector<std::uint8_t> is_fixed_, is_touched_;
+  /// Triangles on the outside by their least vertex v, from first_outside_[v] to first_outside_[v + 1]: their
+  /// other vertices, in order.
+  std::vector<std::uint32_t> first_outside_;
+  std::vector<std::array<std::uint32_t, 2>> outside_;
   std::vector<std::uint32_t> slot_;  ///< of each vertex
   std::vector<std::vector<std::uint32_t>> stars_;
   std::vector<std::uint32_t> gaps_;  ///< tetrahedra that are not there

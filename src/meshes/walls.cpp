@@ -42,6 +42,12 @@ void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, 
   }
 }
 
+bool is_in_piece(const Piece& piece, const Vector<3>& p) {
+  return (p - piece.center).norm() < piece.radius && std::ranges::all_of(piece.cuts, [&](const Cut& cut) {
+           return cut.face != Cut::contact || cut.keeps.normal.dot(p) < cut.keeps.offset;
+         });
+}
+
 bool is_in_neck(const DraftNeck& neck, const Vector<3>& p) {
   const Vector<3> d = p - neck.center;
   const double height = d.dot(neck.axis);
@@ -72,6 +78,36 @@ class BoxWalls {
     return lines_[static_cast<std::size_t>(4 * m + 2 * b + a)];
   }
 
+  /// Where spheres, caps and necks cross an edge of the box along axis m.
+  struct Crossings {
+    std::set<std::pair<double, std::uint32_t>> at = {};
+    std::vector<const Piece*> pieces = {};  ///< that may lie on it
+  };
+  Crossings crossings_of(int face, int l, double level, int m) const {
+    Crossings found;
+    const auto add_ends = [&](const std::vector<std::uint32_t>& chain) {
+      for (const std::uint32_t id : {chain.front(), chain.back()})
+        if (const Vector<3>& p = draft_.made.vertices[id]; p[l] == level) found.at.insert({p[m], id});
+    };
+    for (const DraftNeck& neck : draft_.necks)
+      for (const NeckTrace& trace : neck.traces)
+        if (trace.face == face && !trace.is_closed) add_ends(trace.ids);
+    for (const DraftPiece& piece : draft_.pieces)
+      for (std::size_t c = 0; c < piece.circles.size(); ++c) {
+        const Circle& circle = piece.circles[c];
+        if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != face) continue;
+        found.pieces.push_back(&piece.piece);
+        if (!circle.is_whole)
+          for (const auto& chain : circle.chains) add_ends(chain);
+        for (const Chord& chord : piece.chords) {
+          if (chord.circles[0] != c && chord.circles[1] != c) continue;
+          const std::size_t other = chord.circles[0] == c ? chord.circles[1] : chord.circles[0];
+          if (piece.circles[other].kind == Circle::Kind::contact) add_ends(chord.ids);
+        }
+      }
+    return found;
+  }
+
   /// The parts in the fluid of the edge along axis m, at the ends a and b of the next two axes.
   void make_line(int m, int a, int b) {
     const int k = (m + 1) % 3, l = (m + 2) % 3;
@@ -94,42 +130,21 @@ class BoxWalls {
       return std::min(draft_.sizes.on_wall(point(x), Vector<3>::Unit(k), cuts_spheres(k)),
                       draft_.sizes.on_wall(point(x), Vector<3>::Unit(l), cuts_spheres(l)));
     };
-    // Where spheres cross it.
-    std::set<std::pair<double, std::uint32_t>> crossings;
-    std::vector<const Piece*> crossed;
-    if (repeats_[k] && repeats_[l])
-      for (const DraftNeck& neck : draft_.necks)
-        for (const NeckTrace& trace : neck.traces) {
-          if (trace.face != 2 * k || trace.is_closed) continue;
-          for (const std::uint32_t id : {trace.ids.front(), trace.ids.back()})
-            if (const Vector<3>& p = draft_.made.vertices[id]; p[l] == at[l]) crossings.insert({p[m], id});
-        }
-    if (cuts_spheres(k) && cuts_spheres(l))
-      for (const DraftPiece& piece : draft_.pieces)
-        for (const Circle& circle : piece.circles) {
-          if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != 2 * k + a ||
-              circle.is_whole)
-            continue;
-          for (const auto& chain : circle.chains)
-            for (const std::uint32_t id : {chain.front(), chain.back()})
-              if (const Vector<3>& p = draft_.made.vertices[id]; p[l] == at[l]) {
-                crossings.insert({p[m], id});
-                crossed.push_back(&piece.piece);
-              }
-        }
+    const auto crossings =
+        cuts_spheres(k) && cuts_spheres(l) ? crossings_of(2 * k + a, l, at[l], m) : Crossings{};
     const double lower = ends_[0][m], upper = ends_[1][m];
     const std::uint32_t first = draft_.vertex_at(point(lower), size(lower));
     const std::uint32_t last =
         repeats_[m] ? draft_.lifted(m, first) : draft_.vertex_at(point(upper), size(upper));
     std::vector<std::pair<double, std::uint32_t>> stops = {{lower, first}};
-    for (const auto& crossing : crossings)
+    for (const auto& crossing : crossings.at)
       if (crossing.first > lower && crossing.first < upper) stops.push_back(crossing);
     stops.push_back({upper, last});
     for (std::size_t s = 0; s + 1 < stops.size(); ++s) {
       const double from = stops[s].first, length = stops[s + 1].first - from;
       const Vector<3> middle = point(from + 0.5 * length);
-      if (std::ranges::any_of(crossed,
-                              [&](const Piece* p) { return (middle - p->center).norm() < p->radius; }) ||
+      if (std::ranges::any_of(crossings.pieces,
+                              [&](const Piece* piece) { return is_in_piece(*piece, middle); }) ||
           std::ranges::any_of(draft_.necks,
                               [&](const DraftNeck& neck) { return neck.is_cut && is_in_neck(neck, middle); }))
         continue;

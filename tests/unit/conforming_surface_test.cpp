@@ -311,6 +311,40 @@ TEST(ConformingSurface, EndsOfPeriodsCutBridges) {
     }
 }
 
+/// What caps have, by their flat faces: of each sphere those of different depth or direction.
+double volume_of_caps(const ConformingSurface& surface, const Solids& solids) {
+  const Boundary<3> boundary = boundary_of<3>(solids.domain);
+  std::map<std::array<long, 5>, double> of_cap;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const SurfacePatch& patch = surface.patches[surface.patch[t]];
+    if (patch.kind != SurfacePatch::Kind::cut_face) continue;
+    const auto corner = [&](std::size_t k) { return surface.vertices[surface.triangles[t][k]]; };
+    const Vector<3> normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+    const double r = solids.spheres.r[patch.index];
+    const double depth = normal.dot(boundary.minimum_image(corner(0) - solids.spheres.center(patch.index)));
+    const auto rounded = [](double x) { return std::lround(x * 1e4); };
+    of_cap[{patch.index, rounded(depth), rounded(normal[0]), rounded(normal[1]), rounded(normal[2])}] =
+        cap_volume(r, r - depth);
+  }
+  double sum = 0;
+  for (const auto& [cap, volume] : of_cap) sum += volume;
+  return sum;
+}
+
+TEST(ConformingSurface, CapsAreDeeperWhereEndsWouldNearlyTouchThem) {
+  const Domain box = periodic_box(Vector<3>(3, 3.3, 3.6));
+  const Solids solids = solids_in(clustered(box, 0.5, 3000, 1), box, ContactTreatment::cap);
+  for (const bool with_solids : {false, true}) {
+    const ConformingSurface surface = conforming_surface(solids, {.per_gap = 4, .solids = with_solids});
+    expect_sound(surface, 0.04);
+    EXPECT_GT(surface.statement.deepened_caps, 0u);
+    EXPECT_LT(surface.statement.deepened_caps, solids.contacts.pairs);
+    EXPECT_GT(surface.statement.contact_area, solids.contacts.contact_area);
+    EXPECT_NEAR(surface.statement.fluid_volume,
+                3 * 3.3 * 3.6 - volume_of_balls(solids.spheres) + volume_of_caps(surface, solids), 1e-6);
+  }
+}
+
 TEST(ConformingSurface, CylindersHaveRoundSides) {
   for (const bool is_periodic : {false, true}) {
     const Cylinder cylinder{.radius = 2, .height = 4, .periodic = is_periodic};

@@ -70,6 +70,7 @@ struct BedMeshReport {
   Vector<3> place_of_least_angle = Vector<3>::Zero();
   std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
+  std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
   std::size_t clipped = 0;        ///< spheres that the faces of a box cut out of the packing clip
   std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
