@@ -138,6 +138,7 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
                                             .shells = shells_of(packing, options)},
                                            options.neck_edge, monitor);
   report.gaps_at_edges = in_walls.gaps_at_edges;
+  report.wall_deviation = in_walls.wall_deviation;
   Solids& solids = in_walls.solids;
   if (options.cut.empty()) return {std::move(solids), {}};
   CutOut part = cut_out(solids, box_in(options.cut, packing.scene.unit), options.gap);
@@ -182,6 +183,8 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
                                                  monitor);
   name_spheres(surface, of_packing);
   take_surface(surface, report);
+  // The surface states what is between its own walls.
+  report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
   VolumeMesh mesh = fill_with_layers(surface, {}, filled, monitor);

@@ -12,6 +12,7 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"necks", report.necks},
             {"shrunk_necks", report.shrunk_necks},
             {"gaps_at_edges", report.gaps_at_edges},
+            {"wall_deviation", report.wall_deviation},
             {"widened_necks", report.widened_necks},
             {"deepened_caps", report.deepened_caps},
             {"clipped", report.clipped},
