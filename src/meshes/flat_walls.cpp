@@ -229,7 +229,9 @@ SolidsInWalls solids_in_walls(const Spheres<dynamic>& spheres, const Domain& dom
     ++made.gaps_at_edges;
     made.largest_shrink = std::max(made.largest_shrink, 1 - smaller.r[i] / r);
   }
-  made.solids = solids_of(smaller, domain, options, monitor);
+  SolidsOptions given = options;
+  given.shells = scaled(options.shells, spheres, smaller);
+  made.solids = solids_of(smaller, domain, given, monitor);
   return made;
 }
 
