@@ -30,6 +30,8 @@ std::string text_of_place(const Vector<3>& p) {
 
 void print_surface(const BedMeshReport& report, std::string_view unit) {
   fmt::print("spheres      {}; {} necks", grouped(report.spheres), grouped(report.necks));
+  if (report.clipped > 0) fmt::print("; {} cut by faces of the box", grouped(report.clipped));
+  if (report.cleared > 0) fmt::print(", {} made smaller, which nearly touched it", grouped(report.cleared));
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for", grouped(report.shrunk_necks));
   if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
@@ -37,6 +39,9 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
   if (report.gaps_at_edges > 0)
     fmt::print("; {} with a gap instead, at walls where no bridge fits into a flat part",
                grouped(report.gaps_at_edges));
+  if (report.wall_deviation > 0)
+    fmt::print("\nwalls        flat facets around the round ones, up to {:.3g} {} off them",
+               report.wall_deviation, unit);
   fmt::print("\nsurface      {} triangles, least edge {:.4g} {}, least angle {:.2f} degrees near {}\n",
              grouped(report.triangles), report.least_edge, unit, report.least_triangle_angle,
              text_of_place(report.place_of_least_angle));
@@ -46,7 +51,9 @@ void print_quality(const BedMeshReport& report) {
   fmt::print("mesh         {} tetrahedra, {} nodes\n", grouped(report.tetrahedra), grouped(report.nodes));
   fmt::print("quality      SICN from {:.4f}, mean {:.3f}; dihedral angles {:.2f} to {:.2f} degrees\n",
              report.least_sicn, report.mean_sicn, report.least_angle, report.largest_angle);
-  if (report.least_curved_sicn) fmt::print("curved       SICN from {:.4f}\n", *report.least_curved_sicn);
+  if (report.least_curved_sicn)
+    fmt::print("curved       SICN from {:.4f}; {} edges on round surfaces, {} of them kept straight\n",
+               *report.least_curved_sicn, grouped(report.curved_edges), grouped(report.straight_edges));
   fmt::print("by tenths   ");
   for (const std::size_t count : report.histogram) fmt::print(" {}", grouped(count));
   fmt::print("\n");
@@ -62,9 +69,12 @@ void print_report(const BedMeshReport& report, std::string_view unit) {
              report.meshed_porosity);
   if (report.contact_area > 0) fmt::print("; contact area {:.6g} {}^2", report.contact_area, unit);
   fmt::print("\n");
-  for (const BedMeshReport::Group& group : report.groups)
-    fmt::print("{:<13}{} tetrahedra, volume {:.9g} {}^3\n", group.name, grouped(group.tetrahedra),
+  for (const BedMeshReport::Group& group : report.groups) {
+    fmt::print("{:<12} {} tetrahedra, volume {:.9g} {}^3", group.name, grouped(group.tetrahedra),
                group.volume, unit);
+    if (group.stated_volume) fmt::print(", {:.9g} in closed form", *group.stated_volume);
+    fmt::print("\n");
+  }
   fmt::print("seconds     ");
   for (const BedMeshReport::Part& part : report.parts) {
     fmt::print(" {} {:.1f}", part.name, part.seconds);
@@ -90,7 +100,7 @@ int mesh_of(const MeshCall& call) {
   if (!call.quiet) say_written(call.format, meshed.note, meshed.files);
   if (report.keeps_promise()) return exit_code::done;
   say(stderr, "bernal: the least SICN is {:.4f}, below {}: smaller --mesh-size and --neck-size help\n",
-      report.least_sicn, BedMeshReport::promised_sicn);
+      report.worst_sicn(), BedMeshReport::promised_sicn);
   return exit_code::not_reached;
 }
 
@@ -106,6 +116,7 @@ Option option_of(const MeshKey& key, std::map<std::string, std::string>& words) 
                 [&words, name = key.name](const std::string& word) { words[name] = word; }, key.what,
                 key.placeholder};
   if (!key.words.empty()) return one_of(std::move(option), key.words);
+  if (std::holds_alternative<std::string MeshFileOptions::*>(key.to)) return option;
   if (std::holds_alternative<int MeshFileOptions::*>(key.to))
     return within(std::move(option), static_cast<int>(key.least), static_cast<int>(key.most));
   return within(std::move(option), key.least, key.most);

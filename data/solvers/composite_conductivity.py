@@ -5,11 +5,12 @@
 
 RESULT is what `bernal pack` wrote, in a box that is periodic along all axes. `bernal mesh` meshes spheres, bridges and
 what is between them, with the OPTIONS; a mesh that stands in the case already is taken as it is. Each region of the mesh
-has its conductivity: 1 for "fluid", which is the matrix, and 10 for others unless --conductivity names them.
+has its conductivity: 1 for "fluid", which is the matrix, and 10 for others, "spheres", "bridges" and layers of spheres by
+their names, unless --conductivity names them.
 
 The temperature is the sum of a unit gradient along x, y or z in turn and of a field that repeats itself: temperatures of
 opposite faces differ by the period where they face along that axis, and are equal elsewhere. The effective conductivity
-is the mean heat flux over the mesh. On a mesh it is an upper bound of the exact one for the geometry of the mesh.
+is the mean heat flux over the mesh. It is an upper bound of the exact one for the geometry of the mesh.
 
 Printed beside it, at the volume fractions of the mesh, with the least and largest conductivity k- and k+:
   Wiener (1912)             1 / sum(phi / k)  to  sum(phi k), for any arrangement
@@ -19,6 +20,7 @@ Debian: tetgen calculix-ccx python3-numpy.
 """
 import argparse
 import json
+import math
 import re
 import shutil
 import subprocess
@@ -52,13 +54,26 @@ class Mesh:
         self.nodes = nodes[:, 1:]
         self.regions = {name: numpy.array([row.split(",") for row in rows], dtype=int)
                         for name, rows in self.regions.items()}
-        for elements in self.regions.values():
-            if elements.shape[1] != 5:
-                stop("the elements have to be of first order")
 
-    def volumes(self, region):
-        a, b, c, d = (self.nodes[self.regions[region][:, k] - 1] for k in range(1, 5))
-        return abs(numpy.einsum("ij,ij->i", b - a, numpy.cross(c - a, d - a))) / 6
+    def weights(self, region):
+        """Of the points at which CalculiX prints: the volume in one, or by the Jacobian in the four of second order."""
+        elements = self.regions[region]
+        corners = self.nodes[elements[:, 1:] - 1]
+        if elements.shape[1] == 5:
+            return abs(numpy.linalg.det(corners[:, 1:] - corners[:, :1]))[:, None] / 6
+        far, near = 0.25 + 0.15 * math.sqrt(5), 0.25 - 0.05 * math.sqrt(5)
+        weights = numpy.empty((len(elements), 4))
+        for k in range(4):
+            share = numpy.full(4, near)  # barycentric coordinates
+            share[k] = far
+            slopes = numpy.zeros((10, 4))
+            for i in range(4):
+                slopes[i, i] = 4 * share[i] - 1
+            for m, (i, j) in enumerate(((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))):
+                slopes[4 + m, i], slopes[4 + m, j] = 4 * share[j], 4 * share[i]
+            along = slopes[:, 1:] - slopes[:, :1]  # by the second, third and fourth, the first making up for them
+            weights[:, k] = abs(numpy.linalg.det(numpy.einsum("enx,na->exa", corners, along))) / 24
+        return weights
 
     def count(self):
         return sum(len(elements) for elements in self.regions.values())
@@ -84,24 +99,22 @@ def write_job(folder, name, mesh, conductivity, edges):
 
 
 def mean_fluxes(file, mesh):
-    """The mean heat flux of each step, a row each, from the flux of every tetrahedron."""
-    volumes = {}
+    """The mean heat flux of each step, a row each, from the flux at points of every tetrahedron."""
+    weights = {}
     for name, elements in mesh.regions.items():
-        volumes.update(zip(elements[:, 0], mesh.volumes(name)))
-    total, sums = sum(volumes.values()), []
-    steps = {}
+        weights.update(zip(elements[:, 0], mesh.weights(name)))
+    steps = {}  # by time: the integral of the flux, and the volume
     with open(file) as lines:
         time = None
         for line in lines:
             words = line.split()
             if "time" in words:
                 time = words[-1]
-                steps.setdefault(time, numpy.zeros(3))
+                steps.setdefault(time, numpy.zeros(4))
             elif len(words) == 5 and time is not None:
-                steps[time] += volumes[int(words[0])] * numpy.array(words[2:], dtype=float)
-    for time in sorted(steps, key=float):
-        sums.append(steps[time] / total)
-    return numpy.array(sums)
+                weight = weights[int(words[0])][int(words[1]) - 1]
+                steps[time] += weight * numpy.array([*words[2:], 1], dtype=float)
+    return numpy.array([steps[time][:3] / steps[time][3] for time in sorted(steps, key=float)])
 
 
 def wiener(shares, values):
@@ -154,7 +167,7 @@ def main():
     if fluxes.shape != (3, 3):
         stop(f"CalculiX solved {len(fluxes)} steps of three; see {folder / 'conduction.sta'}")
     effective = -numpy.diag(fluxes)
-    volumes = {name: mesh.volumes(name).sum() for name in mesh.regions}
+    volumes = {name: mesh.weights(name).sum() for name in mesh.regions}
     shares = numpy.array(list(volumes.values())) / sum(volumes.values())
     values = numpy.array([conductivity[name] for name in volumes])
     said = {"cells": mesh.count(), "shares": dict(zip(volumes, shares)), "conductivities": conductivity,

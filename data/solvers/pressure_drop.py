@@ -3,15 +3,13 @@
 
     data/solvers/pressure_drop.py RESULT [--reynolds 1 100] [--case FOLDER] [--json] [-- OPTIONS]
 
-RESULT is what `bernal pack` wrote: a bed in a cylinder, or a cylinder or box that repeats itself. `bernal mesh` meshes
+RESULT is what `bernal pack` wrote: a column, a cylinder with periodic = true, or a box that is periodic along all axes, so
+that there is no inlet and no outlet whose influence would have to be taken off. `bernal mesh` meshes
 the space between the spheres, with the OPTIONS; a mesh that stands in the case already is taken as it is. The flow is
 laminar, incompressible and steady, and fluid sticks to spheres, bridges and walls.
 
-In a cylinder with a floor and a lid the fluid enters at the floor, everywhere with the superficial velocity U, and leaves
-at the lid. The pressure gradient is the slope of the pressure over the height, of least squares over all cells at least
-1.5 d away from both ends of the bed, and the porosity is that between these planes. In a domain that repeats itself a
-uniform force drives the fluid at the same U along the period of the cylinder, or along --along of the box; its size is
-the gradient.
+A uniform force drives the fluid at the superficial velocity U along the period of the column, or --along of the box; its
+size is the gradient of the pressure.
 
 Printed is f = (dp/dL) d / (rho U^2) at Re = U d / nu, where d is the diameter with the spheres' ratio of volume to
 surface, and beside it, with the porosity e of the mesh and A = 1 + 2 / (3 (D/d) (1 - e)), which is 1 without walls:
@@ -89,28 +87,16 @@ class Bed:
             self.width = 2 * container["radius"]
             self.axis = numpy.array(container.get("axis", [0, 0, 1]), dtype=float)
             self.axis /= numpy.linalg.norm(self.axis)
-            self.base = numpy.array(container.get("base", [0, 0, 0]), dtype=float)
             self.area, self.length = math.pi * container["radius"] ** 2, container["height"]
-            self.repeats = container.get("periodic", False)
+            if not container.get("periodic", False):
+                stop("the column has a floor and a lid; write periodic = true into [container], and pack it again")
         elif container["kind"] == "periodic" and not container.get("walls") and len(report["box"]["edges"]) == 3:
             edges = report["box"]["edges"]
             k = "xyz".index(along)
-            self.width, self.axis, self.base = math.inf, numpy.eye(3)[k], numpy.zeros(3)
-            self.length, self.area, self.repeats = edges[k], math.prod(edges) / edges[k], True
+            self.width, self.axis = math.inf, numpy.eye(3)[k]
+            self.length, self.area = edges[k], math.prod(edges) / edges[k]
         else:
-            stop("the bed has to lie in a cylinder, or in a box that is periodic along all axes")
-
-    def heights(self, points):
-        return (points - self.base) @ self.axis
-
-    def window(self):
-        """Two planes within the bed, by their heights."""
-        heights, radii = self.heights(self.spheres[:, :3]), self.spheres[:, 3]
-        lower = (heights - radii).min() + 1.5 * self.diameter
-        upper = (heights + radii).max() - 1.5 * self.diameter
-        if upper < lower + self.diameter:
-            stop("the bed is too shallow: it needs four diameters of height, or a cylinder with periodic = true")
-        return lower, upper
+            stop("the bed has to lie in a periodic cylinder, or in a box that is periodic along all axes")
 
 
 def list_of(file, columns):
@@ -133,22 +119,9 @@ class Case:
         middles = faces.mean(axis=1)
         areas = numpy.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]) / 2
         fluxes = (middles * areas).sum(axis=1) / 3
-        cells = max(owner.max(), neighbour.max()) + 1
-        self.volumes = numpy.bincount(owner, fluxes, cells)
-        self.volumes -= numpy.bincount(neighbour, fluxes[:len(neighbour)], cells)
-        self.centers = numpy.empty((cells, 3))
-        for k in range(3):
-            self.centers[:, k] = numpy.bincount(owner, middles[:, k], cells)
-            self.centers[:, k] += numpy.bincount(neighbour, middles[:len(neighbour), k], cells)
-        self.centers /= 4  # of tetrahedra, each middle of a face being the mean of three corners
-        if bed.repeats:
-            self.porosity = self.volumes.sum() / (bed.area * bed.length)
-            return
-        lower, upper = bed.window()
-        heights = bed.heights(self.centers)
-        self.inside = (heights > lower) & (heights < upper)
-        self.heights = heights[self.inside]
-        self.porosity = self.volumes[self.inside].sum() / (bed.area * (upper - lower))
+        self.cells = max(owner.max(), neighbour.max()) + 1
+        volume = fluxes.sum() - fluxes[:len(neighbour)].sum()  # what flows out of one cell flows into another
+        self.porosity = volume / (bed.area * bed.length)
 
     def write(self, name, kind, text):
         file = self.folder / name
@@ -156,22 +129,13 @@ class Case:
         file.write_text(HEAD.format(kind=kind, name=file.name) + text)
 
     def write_fields(self):
-        velocity = vector(self.bed.axis)  # U = 1 in the unit of length
         of_velocity, of_pressure = "", ""
         for name, kind in self.patches.items():
-            is_inlet, is_outlet = name == "floor", name == "lid"
-            if kind == "cyclic":
-                u = p = "type cyclic;"
-            elif is_inlet:
-                u, p = f"type fixedValue; value uniform {velocity};", "type zeroGradient;"
-            elif is_outlet:
-                u = f"type inletOutlet; inletValue uniform (0 0 0); value uniform {velocity};"
-                p = "type fixedValue; value uniform 0;"
-            else:
-                u, p = "type noSlip;", "type zeroGradient;"
+            is_end = kind == "cyclic"
+            u, p = ("type cyclic;", "type cyclic;") if is_end else ("type noSlip;", "type zeroGradient;")
             of_velocity += f"    {name} {{ {u} }}\n"
             of_pressure += f"    {name} {{ {p} }}\n"
-        start = vector(self.bed.axis / self.porosity)
+        start = vector(self.bed.axis / self.porosity)  # U = 1 in the unit of length
         self.write("0/U", "volVectorField", f"dimensions [0 1 -1 0 0 0 0];\ninternalField uniform {start};\n"
                    f"boundaryField\n{{\n{of_velocity}}}\n")
         self.write("0/p", "volScalarField", "dimensions [0 2 -2 0 0 0 0];\ninternalField uniform 0;\n"
@@ -179,19 +143,7 @@ class Case:
         self.write("constant/turbulenceProperties", "dictionary", "simulationType laminar;\n")
         self.write("system/fvSchemes", "dictionary", SCHEMES)
         self.write("system/fvSolution", "dictionary", SOLUTION)
-        if self.bed.repeats:
-            self.write("constant/fvOptions", "dictionary", FORCE.format(velocity=start))
-
-    def gradient(self, said, time):
-        """That of the pressure, at U = 1."""
-        if self.bed.repeats:
-            return float(re.findall(r"pressure gradient = (\S+)", said)[-1])
-        text = (self.folder / str(time) / "p").read_text()
-        found = re.search(r"nonuniform List<scalar>\s*\d+\s*\(([^)]*)\)", text)
-        pressure = numpy.array(found[1].split(), dtype=float)[self.inside]
-        weights = self.volumes[self.inside]
-        off = self.heights - numpy.average(self.heights, weights=weights)
-        return -(weights * off * pressure).sum() / (weights * off * off).sum()
+        self.write("constant/fvOptions", "dictionary", FORCE.format(velocity=start))
 
     def solve(self, reynolds, begin, every, most, tolerance):
         """The dimensionless gradient, how much the last iterations changed it, and their number."""
@@ -201,7 +153,7 @@ class Case:
         for time in range(begin + every, begin + most + 1, every):
             self.write("system/controlDict", "dictionary", CONTROL.format(end=time, every=every))
             said = run("simpleFoam", folder=self.folder)
-            drop = self.gradient(said, time) * self.bed.diameter
+            drop = float(re.findall(r"pressure gradient = (\S+)", said)[-1]) * self.bed.diameter
             change = abs(drop / last - 1) if last else math.inf
             last = drop
             if change < tolerance:
@@ -249,6 +201,7 @@ def main():
             stop(f"{program} is not installed")
     bed = Bed(asked.result, asked.along)
     folder = asked.case or asked.result.with_name(asked.result.name + "_flow")
+    folder = folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     if not (folder / "constant" / "polyMesh").exists():
         run(Path(shutil.which(asked.bernal)).resolve(), "mesh", asked.result.resolve(), "--to", "openfoam", "-o", "bed.foam",
@@ -258,12 +211,12 @@ def main():
         shutil.rmtree(old)
     case.write_fields()
     ratio = bed.width / bed.diameter
-    said = {"cells": len(case.volumes), "spheres": len(bed.spheres), "porosity": case.porosity,
+    said = {"cells": case.cells, "spheres": len(bed.spheres), "porosity": case.porosity,
             "width_over_diameter": ratio if math.isfinite(ratio) else None, "flows": []}
     if not asked.json:
         walls = f"D/d = {ratio:.4g}" if math.isfinite(ratio) else "no walls"
         print(f"bed           {len(bed.spheres):,} spheres, {walls}, porosity {case.porosity:.4f} of the mesh, "
-              f"{len(case.volumes):,} tetrahedra", flush=True)
+              f"{case.cells:,} tetrahedra", flush=True)
     begin = 0
     for reynolds in sorted(asked.reynolds):
         drop, change, begin = case.solve(reynolds, begin, 50, asked.most, asked.tolerance)

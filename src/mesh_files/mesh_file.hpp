@@ -30,12 +30,16 @@ struct MeshGroups {
 struct ClassesOfMesh {
   std::vector<std::string> names = {};
   std::vector<std::uint32_t> of_sphere = {};
+  /// The names of the layers of each class, from the centre out; one list where there are no classes.
+  std::vector<std::vector<std::string>> layers = {};
 };
-/// Other characters than letters, digits, _ and - become _; equal names are numbered.
+/// Other characters than letters, digits, _ and - become _; equal names are numbered. A layer that several
+/// classes have is named after these, too: "kernel_of_steel".
 ClassesOfMesh classes_of_mesh(const Packing&);
 
 /// Where there are classes, "spheres_steel" and "surface_of_steel" stand for "spheres" and
-/// "surface_of_spheres".
+/// "surface_of_spheres"; where spheres have layers, "layer_kernel" stands for what is in them, and
+/// "surface_of_layer_kernel" for where it ends within others.
 MeshGroups groups_of(const VolumeMesh&, const Domain&, const ClassesOfMesh& = {});
 
 /// "x_lower" for 0, "x_upper" for 1, up to "z_upper" for 5.

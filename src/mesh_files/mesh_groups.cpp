@@ -2,12 +2,19 @@
 #include <array>
 
 #include "bernal/scene/sphere_classes.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "mesh_files/mesh_file.hpp"
 
 namespace bernal {
 namespace {
 
-std::string name_of_patch(const SurfacePatch& patch, const Domain& domain, const ClassesOfMesh& classes) {
+std::string name_of_layer(const MeshRegion& region, const ClassesOfMesh& classes) {
+  const std::uint32_t of_class = classes.of_sphere.empty() ? 0 : classes.of_sphere[*region.sphere];
+  return "layer_" + classes.layers[of_class][*region.layer];
+}
+
+std::string name_of_patch(const SurfacePatch& patch, const VolumeMesh& mesh, const Domain& domain,
+                          const ClassesOfMesh& classes) {
   constexpr std::array<const char*, 3> of_cylinder = {"side", "floor", "lid"};
   switch (patch.kind) {
     case SurfacePatch::Kind::sphere:
@@ -19,10 +26,12 @@ std::string name_of_patch(const SurfacePatch& patch, const Domain& domain, const
       return "caps";
     case SurfacePatch::Kind::period_end:
       return name_of_end(patch.index);
+    case SurfacePatch::Kind::layer:
+      return "surface_of_" + name_of_layer(mesh.regions[static_cast<std::size_t>(patch.regions[0])], classes);
     case SurfacePatch::Kind::wall:
       break;
   }
-  if (std::holds_alternative<Mesh>(domain)) return "walls";
+  if (is_faceted(domain)) return "walls";
   return std::holds_alternative<Cylinder>(domain) ? of_cylinder.at(patch.index) : name_of_end(patch.index);
 }
 
@@ -31,6 +40,19 @@ std::uint32_t number_of(std::vector<std::string>& names, const std::string& name
   const auto number = static_cast<std::uint32_t>(found - names.begin());
   if (found == names.end()) names.push_back(name);
   return number;
+}
+
+std::string word_of(std::string name) {
+  for (char& c : name)
+    if (!(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9') && c != '-') c = '_';
+  return name;
+}
+
+/// The name, numbered if others have it.
+std::string not_among(const std::vector<std::string>& others, const std::string& word) {
+  std::string name = word;
+  for (int k = 2; std::ranges::find(others, name) != others.end(); ++k) name = word + "_" + std::to_string(k);
+  return name;
 }
 
 }  // namespace
@@ -47,16 +69,24 @@ std::uint32_t MeshGroups::surface_named(std::string_view name) const {
 
 ClassesOfMesh classes_of_mesh(const Packing& packing) {
   ClassesOfMesh made;
-  if (packing.classes.empty()) return made;
-  made.of_sphere = packing.classes;
-  for (const SphereClass& one : classes_of(packing.scene)) {
-    std::string word = one.name;
-    for (char& c : word)
-      if (!(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z') && !(c >= '0' && c <= '9') && c != '-') c = '_';
-    std::string name = word;
-    for (int k = 2; std::ranges::find(made.names, name) != made.names.end(); ++k)
-      name = word + "_" + std::to_string(k);
-    made.names.push_back(name);
+  if (!packing.classes.empty()) {
+    made.of_sphere = packing.classes;
+    for (const SphereClass& one : classes_of(packing.scene))
+      made.names.push_back(not_among(made.names, word_of(one.name)));
+  }
+  const std::vector<std::vector<Layer>> layers = layers_by_class(packing.scene);
+  std::vector<std::string> all;
+  for (std::size_t c = 0; c < layers.size(); ++c) {
+    auto& names = made.layers.emplace_back();
+    for (const Layer& layer : layers[c]) {
+      const auto has_it = [&](const std::vector<Layer>& of) {
+        return std::ranges::find(of, layer.name, &Layer::name) != of.end();
+      };
+      std::string name = word_of(layer.name);
+      if (std::ranges::count_if(layers, has_it) > 1 && c < made.names.size()) name += "_of_" + made.names[c];
+      names.push_back(not_among(all, name));
+      all.push_back(names.back());
+    }
   }
   return made;
 }
@@ -64,12 +94,14 @@ ClassesOfMesh classes_of_mesh(const Packing& packing) {
 MeshGroups groups_of(const VolumeMesh& mesh, const Domain& domain, const ClassesOfMesh& classes) {
   MeshGroups groups;
   for (const SurfacePatch& patch : mesh.patches)
-    groups.surface_of_patch.push_back(number_of(groups.surfaces, name_of_patch(patch, domain, classes)));
+    groups.surface_of_patch.push_back(
+        number_of(groups.surfaces, name_of_patch(patch, mesh, domain, classes)));
   for (const MeshRegion& region : mesh.regions) {
     const bool is_told = region.sphere && !classes.names.empty();
     groups.volume_of_region.push_back(number_of(
-        groups.volumes,
-        is_told ? region.group + "_" + classes.names[classes.of_sphere[*region.sphere]] : region.group));
+        groups.volumes, region.layer ? name_of_layer(region, classes)
+                        : is_told    ? region.group + "_" + classes.names[classes.of_sphere[*region.sphere]]
+                                     : region.group));
   }
   return groups;
 }

@@ -33,6 +33,7 @@ struct Taken {
     const auto [stop, problem] = std::from_chars(text.data(), end, options.*member);
     if (problem != std::errc() || stop != end) refuse_value(key, text);
   }
+  void operator()(std::string MeshFileOptions::*member) const { options.*member = text; }
   void operator()(bool MeshFileOptions::*member) const { options.*member = place() == 1; }
   void operator()(ContactTreatment MeshFileOptions::*member) const {
     constexpr ContactTreatment treatments[] = {ContactTreatment::bridge, ContactTreatment::gap,
@@ -63,11 +64,17 @@ const std::vector<MeshKey>& mesh_keys() {
        0.9},
       {"gap_size", "Edges where surfaces are near each other, in widths of the gap; 4 if absent", "WIDTHS",
        &Of::gap_edge, 0.5, 50},
+      {"layer_size", "Edges on spheres with thin layers, in thicknesses of these; 6 if absent", "WIDTHS",
+       &Of::layer_edge, 0.5, 50},
       {.name = "regions",
        .what = "What is meshed: the fluid, or the spheres too; fluid if absent",
        .placeholder = "WORD",
        .to = &Of::solids,
        .words = {"fluid", "all"}},
+      {"cut",
+       "The part that is meshed, in the scene's unit: \"x = 1..4, y = 1..4, z = 0..5\"; its faces cut "
+       "spheres",
+       "BOX", &Of::cut},
       {"order", "2: elements with middles of edges, on the true spheres; 1 if absent", "N", &Of::order, 1, 2},
   };
   return all;

@@ -1,17 +1,23 @@
 #include "bernal/mesh_files/mesh_packing.hpp"
 
+#include <array>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
+#include "bernal/measure/slab.hpp"
+#include "bernal/scene/sphere_layers.hpp"
 #include "bernal/version.hpp"
 #include "mesh_files/mesh_file.hpp"
 #include "meshes/conforming_surface.hpp"
-#include "meshes/fill.hpp"
+#include "meshes/fill_layers.hpp"
 #include "meshes/flat_walls.hpp"
 #include "meshes/mesh_quality.hpp"
 #include "meshes/second_order.hpp"
 #include "result/free_places.hpp"
+#include "solids/cut_out.hpp"
 #include "solids/solids.hpp"
 
 namespace fs = std::filesystem;
@@ -64,11 +70,95 @@ void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, BedMeshReport& 
   const std::vector<double> volumes =
       mesh.is_curved() ? curved_volumes_of_regions(mesh) : volumes_of_regions(mesh);
   report.meshed_porosity = volumes.front() / report.domain_volume;
-  for (const std::string& name : groups.volumes) report.groups.push_back({.name = name});
+  for (const std::string& name : groups.volumes) report.groups.push_back({.name = name, .stated_volume = 0});
   for (std::size_t r = 0; r < volumes.size(); ++r)
     report.groups[groups.volume_of_region[r]].volume += volumes[r];
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    std::optional<double>& stated = report.groups[groups.volume_of_region[r]].stated_volume;
+    if (stated && mesh.regions[r].volume) {
+      *stated += *mesh.regions[r].volume;
+    } else {
+      stated.reset();
+    }
+  }
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
     ++report.groups[groups.volume_of(mesh, t)].tetrahedra;
+}
+
+/// Where layers of spheres begin; nothing where only the fluid is meshed.
+Shells shells_of(const Packing& packing, const MeshFileOptions& options) {
+  Shells shells;
+  if (!options.solids) return shells;
+  const SphereLayers layers = layers_of(packing);
+  if (layers.empty()) return shells;
+  shells.first.push_back(0);
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+    const std::span<const double> outer = layers.of(i);
+    for (std::size_t k = 0; k + 1 < outer.size(); ++k) shells.radius.push_back(outer[k]);
+    shells.first.push_back(shells.radius.size());
+  }
+  return shells;
+}
+
+/// The box that a text like "x = 1..4, y = 1..4, z = 0..5" names.
+Bounds<3> box_in(std::string_view text, Unit unit) {
+  Bounds<3> box;
+  std::array<bool, 3> has{};
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    const LowerPart slab = slab_in(text.substr(from, comma - from), unit);
+    from = comma + 1;
+    int axis = 0;
+    slab.direction.cwiseAbs().maxCoeff(&axis);
+    if (std::abs(slab.direction[axis]) < 1 || has[static_cast<std::size_t>(axis)] ||
+        !std::isfinite(slab.from) || !std::isfinite(slab.height))
+      break;
+    has[static_cast<std::size_t>(axis)] = true;
+    const double one = -slab.direction[axis] * slab.from, other = -slab.direction[axis] * slab.height;
+    box.lower[axis] = std::min(one, other);
+    box.upper[axis] = std::max(one, other);
+    if (from > text.size() && has[0] && has[1] && has[2]) return box;
+  }
+  refuse(fmt::format("‹cut› takes a box such as \"x = 1..4, y = 1..4, z = 0..5\", not \"{}\"",
+                     plain_text(text)));
+}
+
+/// The solids of a packing, or of a part of it.
+struct SolidsToMesh {
+  Solids solids;
+  std::vector<std::uint32_t>
+      of_packing;  ///< numbers of the spheres in the packing; empty if they are the same
+};
+SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
+                            BedMeshReport& report) {
+  SolidsInWalls in_walls = solids_in_walls(packing.spheres, packing.domain,
+                                           {.contact = options.contact,
+                                            .gap = options.gap,
+                                            .bridge_radius = options.bridge_radius,
+                                            .shells = shells_of(packing, options)},
+                                           options.neck_edge, monitor);
+  report.gaps_at_edges = in_walls.gaps_at_edges;
+  report.wall_deviation = in_walls.wall_deviation;
+  Solids& solids = in_walls.solids;
+  if (options.cut.empty()) return {std::move(solids), {}};
+  CutOut part = cut_out(solids, box_in(options.cut, packing.scene.unit), options.gap);
+  if (part.solids.spheres.empty()) refuse("there are no spheres in the box of ‹cut›");
+  report.spheres = part.solids.spheres.size();
+  report.domain_volume = volume_of(part.solids.domain);
+  report.cleared = part.shrunk;
+  for (const Piece& piece : part.solids.pieces) report.clipped += !piece.cuts.empty();
+  return {std::move(part.solids), std::move(part.of_packing)};
+}
+
+/// Lets patches and regions name spheres by their numbers in the packing.
+void name_spheres(ConformingSurface& surface, const std::vector<std::uint32_t>& of_packing) {
+  if (of_packing.empty()) return;
+  using Kind = SurfacePatch::Kind;
+  for (SurfacePatch& patch : surface.patches)
+    if (patch.kind == Kind::sphere || patch.kind == Kind::layer || patch.kind == Kind::cut_face)
+      patch.index = of_packing[patch.index];
+  for (MeshRegion& region : surface.regions)
+    if (region.sphere) region.sphere = of_packing[*region.sphere];
 }
 
 /// The mesh, its names, and what it is like.
@@ -83,31 +173,32 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.domain_volume = volume_of(packing.domain);
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
-  const SolidsInWalls made = solids_in_walls(
-      packing.spheres, packing.domain,
-      {.contact = options.contact, .gap = options.gap, .bridge_radius = options.bridge_radius},
-      options.neck_edge, monitor);
-  const Solids& solids = made.solids;
-  report.gaps_at_edges = made.gaps_at_edges;
-  const ConformingSurface surface = conforming_surface(solids,
-                                                       {.sphere_edge = options.sphere_edge,
-                                                        .neck_edge = options.neck_edge,
-                                                        .per_gap = options.gap_edge,
-                                                        .solids = options.solids},
-                                                       monitor);
+  const auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
+  ConformingSurface surface = conforming_surface(solids,
+                                                 {.sphere_edge = options.sphere_edge,
+                                                  .neck_edge = options.neck_edge,
+                                                  .per_gap = options.gap_edge,
+                                                  .solids = options.solids,
+                                                  .per_layer = options.layer_edge},
+                                                 monitor);
+  name_spheres(surface, of_packing);
   take_surface(surface, report);
+  // The surface states what is between its own walls.
+  report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
-  VolumeMesh mesh = fill(surface, {}, filled, monitor);
+  VolumeMesh mesh = fill_with_layers(surface, {}, filled, monitor);
   report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
                           filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
   if (options.order == 2) {
     const Stopwatch curving;
-    make_second_order(mesh, solids.spheres, solids.domain);
+    const CurvedEdges edges = make_second_order(mesh);
+    report.curved_edges = edges.curved;
+    report.straight_edges = edges.kept_straight;
     report.parts.push_back({"second order", curving.seconds()});
   }
-  MeshGroups groups = groups_of(mesh, packing.domain, classes_of_mesh(packing));
+  MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
   take_mesh(mesh, groups, report);
   return {std::move(mesh), std::move(groups)};
 }

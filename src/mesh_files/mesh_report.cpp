@@ -12,8 +12,11 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"necks", report.necks},
             {"shrunk_necks", report.shrunk_necks},
             {"gaps_at_edges", report.gaps_at_edges},
+            {"wall_deviation", report.wall_deviation},
             {"widened_necks", report.widened_necks},
             {"deepened_caps", report.deepened_caps},
+            {"clipped", report.clipped},
+            {"cleared", report.cleared},
             {"triangles", report.triangles},
             {"least_edge", report.least_edge},
             {"least_triangle_angle", report.least_triangle_angle},
@@ -31,12 +34,16 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"meshed_porosity", report.meshed_porosity},
             {"contact_area", report.contact_area}};
   json["least_curved_sicn"] = report.least_curved_sicn ? Json(*report.least_curved_sicn) : Json();
+  json["curved_edges"] = report.curved_edges;
+  json["straight_edges"] = report.straight_edges;
   for (const char* list : {"worst", "groups", "parts"}) json[list] = Json::array();
   for (const BedMeshReport::Place& at : report.worst)
     json["worst"].push_back({{"sicn", at.sicn}, {"center", place(at.center)}});
   for (const BedMeshReport::Group& group : report.groups)
-    json["groups"].push_back(
-        {{"name", group.name}, {"volume", group.volume}, {"tetrahedra", group.tetrahedra}});
+    json["groups"].push_back({{"name", group.name},
+                              {"volume", group.volume},
+                              {"stated_volume", group.stated_volume ? Json(*group.stated_volume) : Json()},
+                              {"tetrahedra", group.tetrahedra}});
   for (const BedMeshReport::Part& part : report.parts)
     json["parts"].push_back(
         {{"name", part.name}, {"seconds", part.seconds}, {"peak_bytes", part.peak_bytes}});

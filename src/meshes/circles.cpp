@@ -5,27 +5,12 @@
 #include <span>
 
 #include "bernal/core/error.hpp"
-#include "meshes/surface_draft.hpp"
+#include "meshes/arcs.hpp"
 
 namespace bernal {
 namespace {
 
 using std::numbers::pi;
-
-/// Directions in the plane of a circle.
-struct CircleFrame {
-  Vector<3> u, v;
-};
-CircleFrame frame_of(const Circle& circle) {
-  const Vector<3> u = circle.normal.unitOrthogonal();
-  return {u, circle.normal.cross(u)};
-}
-
-/// A part of a circle, from angle to angle, with the circles that end it; whole if it ends nowhere.
-struct Arc {
-  double from, to;
-  std::array<std::size_t, 2> ended_by;
-};
 
 class Circles {
  public:
@@ -51,7 +36,7 @@ class Circles {
     for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
       for (std::size_t a = 0; a < draft_.pieces[p].circles.size(); ++a)
         for (std::size_t b = 0; b < a; ++b)
-          if (const std::vector<std::uint32_t> ids = chord(p, b, a); !ids.empty())
+          for (const std::vector<std::uint32_t>& ids : chords_of(p, b, a))
             draft_.pieces[p].chords.push_back({{b, a}, ids});
   }
 
@@ -61,7 +46,7 @@ class Circles {
   std::uint32_t piece_before(std::uint32_t p, int axis) const {
     auto image = draft_.pieces[p].piece.image;
     --image[static_cast<std::size_t>(axis)];
-    return draft_.piece_at(draft_.pieces[p].piece.sphere, image);
+    return draft_.piece_at(draft_.pieces[p].piece.sphere, image, draft_.pieces[p].below);
   }
 
   static std::uint32_t known(std::uint32_t piece) {
@@ -82,7 +67,8 @@ class Circles {
 
   const std::vector<NearBall>& near_of(std::uint32_t p) {
     if (!has_near_[p]) {
-      near_[p] = draft_.sizes.near(draft_.pieces[p].piece.center, draft_.pieces[p].piece.sphere);
+      if (draft_.pieces[p].is_outer())
+        near_[p] = draft_.sizes.near(draft_.pieces[p].piece.center, draft_.pieces[p].piece.sphere);
       has_near_[p] = 1;
     }
     return near_[p];
@@ -107,7 +93,7 @@ class Circles {
   std::uint32_t corner(std::uint32_t p, std::size_t a, std::size_t b, const Vector<3>& at) {
     for (const std::size_t c : {a, b}) {
       const Circle& circle = draft_.pieces[p].circles[c];
-      if (circle.kind != Circle::Kind::end || circle.face % 2 == 0) continue;
+      if (circle.kind != Circle::Kind::end || !draft_.is_lifted(circle.face)) continue;
       const int axis = circle.face / 2;
       const std::uint32_t lower = known(piece_before(p, axis));
       const auto same = [&](std::size_t of) {
@@ -143,7 +129,7 @@ class Circles {
   int upper_among(std::uint32_t p, std::span<const std::size_t> circles) const {
     for (const std::size_t c : circles)
       if (const Circle& circle = draft_.pieces[p].circles[c];
-          circle.kind == Circle::Kind::end && circle.face % 2 == 1)
+          circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face))
         return circle.face;
     return -1;
   }
@@ -151,8 +137,7 @@ class Circles {
   void put_on_ends(std::uint32_t p, std::span<const std::size_t> circles, Vector<3>& q) const {
     for (const std::size_t c : circles)
       if (const Circle& circle = draft_.pieces[p].circles[c]; circle.kind == Circle::Kind::end)
-        q[circle.face / 2] = draft_.boundary.origin[circle.face / 2] +
-                             (circle.face % 2 == 1 ? draft_.boundary.edges[circle.face / 2] : 0);
+        q[circle.face / 2] = draft_.end_at(circle.face);
   }
 
   bool has_end(std::uint32_t p, std::span<const std::size_t> circles) const {
@@ -202,9 +187,11 @@ class Circles {
     return size;
   }
 
-  /// Vertices along the part of a line of two planes that is inside a piece; none if there is no such part,
-  /// or no flat face needs it.
-  std::vector<std::uint32_t> chord(std::uint32_t p, std::size_t a, std::size_t b) {
+  using Chains = std::vector<std::vector<std::uint32_t>>;
+
+  /// Vertices along the parts of a line of two planes that are inside a piece and outside of the piece within
+  /// it; none if there are no such parts, or no flat face needs them.
+  Chains chords_of(std::uint32_t p, std::size_t a, std::size_t b) {
     const std::array<std::size_t, 2> both = {a, b};
     const auto& circles = draft_.pieces[p].circles;
     const Circle &one = circles[a], &other = circles[b];
@@ -212,7 +199,7 @@ class Circles {
       return {};
     const double c = one.normal.dot(other.normal), sine2 = 1 - c * c;
     if (sine2 < 1e-12) return {};
-    if (a > b) return chord(p, b, a);
+    if (a > b) return chords_of(p, b, a);
     if (const auto found = chords_.find({p, a, b}); found != chords_.end()) return found->second;
     const Piece& piece = draft_.pieces[p].piece;
     const Vector<3> foot =
@@ -239,23 +226,49 @@ class Circles {
     if (const int face = upper_among(p, both); face >= 0) {
       const std::uint32_t lower = piece_before(p, face / 2);
       if (lower == Delaunay::none) return {};
-      std::vector<std::uint32_t> ids =
-          chord(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face));
-      for (std::uint32_t& id : ids) id = draft_.lifted(face / 2, id);
-      return ids;
+      Chains made = chords_of(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face));
+      for (auto& ids : made)
+        for (std::uint32_t& id : ids) id = draft_.lifted(face / 2, id);
+      return made;
     }
     const auto at = [&](double t) { return Vector<3>(piece.center + foot + t * along); };
     const auto end = [&](std::size_t e) {
       return by[e] == a ? corner(p, a, b, at(ends[e])) : triple(p, {a, b, by[e]});
     };
-    std::vector<std::uint32_t>& ids = chords_[{p, a, b}];
-    ids.push_back(end(0));
-    const double length = ends[1] - ends[0];
-    const double size = chord_size(p, both);
-    for (const double share : spaced(length, 1, [&](double) { return size; }))
-      ids.push_back(add(p, both, at(ends[0] + share * length), size));
-    ids.push_back(end(1));
-    return ids;
+    struct End {
+      double t;
+      std::uint32_t id;
+    };
+    std::vector<std::array<End, 2>> parts;
+    const std::uint32_t within = draft_.pieces[p].within;
+    const double half = within == DraftPiece::none ? 0 : half_chord(within, foot.squaredNorm());
+    if (half > 0 && ends[0] < half && ends[1] > -half) {
+      const auto same = [&](std::size_t of) { return circle_at(within, circles[of].face); };
+      const auto inner = [&](double t) { return End{t, corner(within, same(a), same(b), at(t))}; };
+      if (ends[0] < -half) parts.push_back({End{ends[0], end(0)}, inner(-half)});
+      if (ends[1] > half) parts.push_back({inner(half), End{ends[1], end(1)}});
+    } else {
+      parts.push_back({End{ends[0], end(0)}, End{ends[1], end(1)}});
+    }
+    double size = chord_size(p, both);
+    if (within != DraftPiece::none) size = std::min(size, draft_.pieces[p].largest_edge);
+    const bool has_prisms = within != DraftPiece::none && draft_.pieces[within].is_copied;
+    Chains made;
+    for (const auto& [from, to] : parts) {
+      std::vector<std::uint32_t>& ids = made.emplace_back(1, from.id);
+      const double length = to.t - from.t;
+      if (!has_prisms)
+        for (const double share : spaced(length, 1, [&](double) { return size; }))
+          ids.push_back(add(p, both, at(from.t + share * length), size));
+      ids.push_back(to.id);
+    }
+    return chords_[{p, a, b}] = made;
+  }
+
+  /// Half the length of a line in a ball, from the square of its distance from the centre; 0 outside.
+  double half_chord(std::uint32_t p, double squared) const {
+    const double r = draft_.pieces[p].piece.radius;
+    return std::sqrt(std::max(0.0, r * r - squared));
   }
 
   std::size_t same_as(std::uint32_t p, const Circle& wanted) const {
@@ -267,51 +280,13 @@ class Circles {
 
   double size_at(std::uint32_t p, const Vector<3>& q) {
     const DraftPiece& piece = draft_.pieces[p];
-    return draft_.sizes.on_sphere(q, piece.piece.center, piece.piece.radius, true, near_of(p));
-  }
-
-  std::vector<Arc> arcs_of(std::uint32_t p, std::size_t c) const {
-    const auto& circles = draft_.pieces[p].circles;
-    const Circle& circle = circles[c];
-    const auto [u, v] = frame_of(circle);
-    struct Gone {
-      double from, to;
-      std::size_t by;
-    };
-    std::vector<Gone> gone;
-    for (std::size_t j = 0; j < circles.size(); ++j) {
-      if (j == c) continue;
-      const double a = circles[j].normal.dot(u), b = circles[j].normal.dot(v), m = std::hypot(a, b);
-      const double level = circles[j].depth - circle.depth * circles[j].normal.dot(circle.normal);
-      if (level <= -circle.radius * m) return {};
-      if (level >= circle.radius * m) continue;
-      const double middle = std::atan2(b, a), half = std::acos(level / (circle.radius * m));
-      double from = middle - half;
-      from -= 2 * pi * std::floor(from / (2 * pi));
-      gone.push_back({from, from + 2 * half, j});
-    }
-    if (gone.empty()) return {{0, 2 * pi, {c, c}}};
-    std::ranges::sort(gone, {}, &Gone::from);
-    std::vector<Arc> arcs;
-    // The end of what is gone so far, begun a turn before.
-    const auto last = std::ranges::max_element(gone, {}, &Gone::to);
-    double end = last->to - 2 * pi;
-    std::size_t by = last->by;
-    for (const Gone& g : gone) {
-      if (g.from > end) arcs.push_back({end, g.from, {by, g.by}});
-      if (g.to > end) {
-        end = g.to;
-        by = g.by;
-      }
-    }
-    std::erase_if(arcs, [](const Arc& arc) { return arc.to - arc.from < 1e-9; });
-    return arcs;
+    return draft_.size_on(piece, q, true, near_of(p));
   }
 
   void fill(std::uint32_t p, std::size_t c) {
     Circle& circle = draft_.pieces[p].circles[c];
     if (!circle.chains.empty() || circle.is_whole) return;
-    if (circle.kind == Circle::Kind::end && circle.face % 2 == 1) {
+    if (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) {
       const int axis = circle.face / 2;
       const std::uint32_t lower = piece_before(p, axis);
       if (lower == Delaunay::none) return;
@@ -319,6 +294,7 @@ class Circles {
       fill(lower, there);
       const Circle& given = draft_.pieces[lower].circles[there];
       circle.is_whole = given.is_whole;
+      circle.chains_around = given.chains_around;
       for (const auto& chain : given.chains) {  // which runs about the opposite normal
         auto& own = circle.chains.emplace_back();
         for (auto id = chain.rbegin(); id != chain.rend(); ++id) own.push_back(draft_.lifted(axis, *id));
@@ -327,15 +303,17 @@ class Circles {
     }
     const Piece& piece = draft_.pieces[p].piece;
     const auto [u, v] = frame_of(circle);
+    if (draft_.pieces[p].is_copied) fill_around(p, c);
     const auto at = [&](double t) {
       Vector<3> q =
           piece.center + circle.depth * circle.normal + circle.radius * (std::cos(t) * u + std::sin(t) * v);
-      if (circle.kind == Circle::Kind::end) q[circle.face / 2] = draft_.boundary.origin[circle.face / 2];
+      if (circle.kind == Circle::Kind::end) q[circle.face / 2] = draft_.end_at(circle.face);
       return q;
     };
-    for (const Arc& arc : arcs_of(p, c)) {
+    for (const Arc& arc : arcs_on(draft_.pieces[p], c)) {
       circle.is_whole = arc.ended_by[0] == c;
-      const std::vector<double> angles = angles_of(p, circle, arc, at);
+      const std::vector<double> angles =
+          draft_.pieces[p].is_copied ? copied_angles(p, circle, arc) : angles_of(p, circle, arc, at);
       auto& chain = circle.chains.emplace_back();
       if (!circle.is_whole) chain.push_back(corner(p, c, arc.ended_by[0], at(arc.from)));
       for (const double t : angles) {
@@ -346,6 +324,22 @@ class Circles {
       }
       if (!circle.is_whole) chain.push_back(corner(p, c, arc.ended_by[1], at(arc.to)));
     }
+  }
+
+  /// The circle at the same end of the piece around a copied one.
+  void fill_around(std::uint32_t p, std::size_t c) {
+    const std::uint32_t around = draft_.pieces[p].around;
+    fill(around, circle_at(around, draft_.pieces[p].circles[c].face));
+  }
+
+  /// Angles of an arc of a copied piece: those of the arc around it.
+  std::vector<double> copied_angles(std::uint32_t p, Circle& copied, const Arc& arc) const {
+    const std::uint32_t around = draft_.pieces[p].around;
+    const std::size_t there = circle_at(around, copied.face);
+    const auto like = arc_like(draft_, draft_.pieces[p], arc, draft_.pieces[around], there);
+    if (!like) fail();
+    copied.chains_around.push_back(like->chain);
+    return like->angles;
   }
 
   /// Angles of points along an arc, without its ends, as many as the sizes there ask for.
@@ -384,7 +378,7 @@ class Circles {
   SurfaceDraft& draft_;
   std::map<std::tuple<std::uint32_t, std::size_t, std::size_t, int>, std::uint32_t> corners_;
   std::map<std::array<std::size_t, 4>, std::uint32_t> triples_;
-  std::map<std::tuple<std::uint32_t, std::size_t, std::size_t>, std::vector<std::uint32_t>> chords_;
+  std::map<std::tuple<std::uint32_t, std::size_t, std::size_t>, Chains> chords_;
   std::vector<std::vector<NearBall>> near_;
   std::vector<char> has_near_;
 };

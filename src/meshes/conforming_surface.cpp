@@ -13,11 +13,12 @@ namespace {
 
 void require_options(const SurfaceMeshOptions& options) {
   if (!(options.sphere_edge >= 0.01 && options.sphere_edge <= 1) ||
-      !(options.neck_edge >= 0.005 && options.neck_edge <= 1) || !(options.per_gap >= 0.1))
+      !(options.neck_edge >= 0.005 && options.neck_edge <= 1) || !(options.per_gap >= 0.1) ||
+      !(options.per_layer >= 0.1))
     throw Error(
         ErrorCode::bad_argument,
         "edges of a mesh are from 0.01 to 1 on spheres and from 0.005 to 1 at bridges, in radii, and at "
-        "least 0.1 widths of gaps");
+        "least 0.1 widths of gaps and thicknesses of layers");
 }
 
 /// Vertices that no triangle has are left out: corners of a box inside of spheres.
@@ -36,6 +37,8 @@ void leave_out_unused(ConformingSurface& made) {
   made.vertices.resize(used);
   made.size.resize(used);
   for (FaceCorners& t : made.triangles)
+    for (std::uint32_t& c : t) c = number[c];
+  for (auto& t : made.prisms.tetrahedra)
     for (std::uint32_t& c : t) c = number[c];
   for (auto& pairs : made.periodic) {
     std::erase_if(pairs,
@@ -63,11 +66,13 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
   deepen_caps(draft);
   if (mesh != nullptr) draft.flat_walls = flat_walls_of(*mesh);
   add_necks(draft);
+  if (options.solids) add_shells(draft);
   add_circles(draft);
   add_neck_traces(draft);
   mesh_necks(draft);
   mesh_pieces(draft, monitor);
   mesh_flat_faces(draft);
+  mesh_copied_shells(draft);
   if (box != nullptr) {
     mesh_box(draft, *box);
   } else if (cylinder != nullptr) {

@@ -8,6 +8,7 @@
 #include "bernal/core/monitor.hpp"
 #include "bernal/core/vector.hpp"
 #include "bernal/geometry/mesh.hpp"
+#include "meshes/round_surface.hpp"
 #include "solids/solids.hpp"
 
 namespace bernal {
@@ -21,18 +22,31 @@ struct SurfacePatch {
     wall,  ///< index: 0 to 5 of a box as Cut::face; of a cylinder 0 its side, 1 its floor, 2 its lid; 0 of a
            ///< sphere; of a mesh its planar part
     period_end,  ///< index: Cut::face
+    layer,       ///< the sphere on which a layer begins that is not the innermost; index: the sphere's
   };
   Kind kind = Kind::sphere;
   std::uint32_t index = 0;
   /// Behind the triangles and in front of them, where their normals point; `nothing` where no mesh is made.
   std::array<std::int32_t, 2> regions = {nothing, nothing};
   static constexpr std::int32_t nothing = -1;
+  RoundSurface shape = {};  ///< what the triangles stand for
 };
 
 /// What a volume mesher fills.
 struct MeshRegion {
-  std::string group;                    ///< "fluid", "spheres" or "bridges"
-  std::optional<std::uint32_t> sphere;  ///< for a piece of a sphere: its index in the packing
+  std::string group;                        ///< "fluid", "spheres" or "bridges"
+  std::optional<std::uint32_t> sphere;      ///< for a piece of a sphere: its index in the packing
+  std::optional<std::uint32_t> layer = {};  ///< of a sphere with layers: which, from the centre out
+  /// In closed form, of all pieces of a sphere or layer together at the first of them, and of a bridge at the
+  /// first of its images, 0 at others; nothing where caps are cut off, whose volume is known in sum only.
+  std::optional<double> volume = {};
+};
+
+/// Tetrahedra that are made with a surface: prisms of thin layers, each cut in three.
+struct PrismLayers {
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< as of VolumeMesh
+  std::vector<std::uint32_t> region;                     ///< of each; such regions have no others
+  bool empty() const { return tetrahedra.empty(); }
 };
 
 /// A neck as it was meshed: its radius may be other than asked for.
@@ -73,6 +87,7 @@ struct ConformingSurface {
   /// Vertices of opposite ends of periods, (lower, upper) by axis: equal but for the coordinate along it.
   std::array<std::vector<std::array<std::uint32_t, 2>>, 3> periodic;
   std::vector<double> size;  ///< the length of edges asked for at each vertex
+  PrismLayers prisms;
   SurfaceStatement statement;
 };
 
@@ -81,6 +96,8 @@ struct SurfaceMeshOptions {
   double neck_edge = 0.15;   ///< edges where necks begin, in radii of the smaller sphere
   double per_gap = 2;        ///< edges where surfaces are near each other, in widths of the gap there
   bool solids = false;       ///< whether what is inside spheres and necks is a region too
+  double per_layer = 6;      ///< edges on spheres with thin layers, in thicknesses of these; half of that
+                             ///< where an end of a period cuts a layer so that no prisms fit into it
 };
 
 /// The surface of a bed, made without a Boolean kernel: points along the circles in which spheres are cut,

@@ -15,7 +15,8 @@ class FlatFaces {
       for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
         for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c) {
           const Circle& circle = draft_.pieces[p].circles[c];
-          if (circle.chains.empty() || (circle.kind == Circle::Kind::end && circle.face % 2 == 1) != upper)
+          if (circle.chains.empty() ||
+              (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) != upper)
             continue;
           if (circle.kind == Circle::Kind::contact || draft_.options.solids) make_face(p, c);
         }
@@ -31,20 +32,37 @@ class FlatFaces {
  private:
   /// Inside a flat face sizes are those of spheres; smaller ones follow from the edges around it.
   std::function<double(const Vector<3>&)> size_in(std::uint32_t p) const {
-    return [size = draft_.options.sphere_edge * draft_.pieces[p].piece.radius](const Vector<3>&) {
-      return size;
+    const DraftPiece& piece = draft_.pieces[p];
+    const double size = draft_.options.sphere_edge * piece.piece.radius;
+    if (piece.within == DraftPiece::none) return [size](const Vector<3>&) { return size; };
+    // In a layer they follow its thickness, and the distance of the sphere within.
+    const Piece& within = draft_.pieces[piece.within].piece;
+    const double most = std::min(size, piece.largest_edge);
+    return [=, center = within.center, r = within.radius,
+            per_gap = draft_.per_gap_of_layers()](const Vector<3>& q) {
+      const double from = (q - center).norm() - r;
+      return from > 0 ? std::max(std::min(most, per_gap * from), 1e-3 * most) : size;
     };
+  }
+  /// The circle at the same end of the piece within, if it has one.
+  const Circle* circle_within(const DraftPiece& piece, const Circle& circle) const {
+    if (piece.within == DraftPiece::none || circle.kind != Circle::Kind::end) return nullptr;
+    for (const Circle& other : draft_.pieces[piece.within].circles)
+      if (other.kind == Circle::Kind::end && other.face == circle.face && !other.chains.empty())
+        return &other;
+    return nullptr;
   }
 
   PlanarPart part_of(const Circle& circle, const Vector<3>& center) {
     return part_in(circle.normal, center + circle.depth * circle.normal,
-                   circle.kind == Circle::Kind::end ? circle.face / 2 : -1);
+                   circle.kind == Circle::Kind::end ? circle.face : -1);
   }
 
-  /// In the plane through a point; `axis`: whose lower end it is, or -1.
-  PlanarPart part_in(const Vector<3>& normal, const Vector<3>& origin, int axis) {
+  /// In the plane through a point; `face`: the end of a period that it is, or -1.
+  PlanarPart part_in(const Vector<3>& normal, const Vector<3>& origin, int face) {
     const Vector<3> u = normal.unitOrthogonal(), v = normal.cross(u);
-    const double at = axis < 0 ? 0 : draft_.boundary.origin[axis];
+    const int axis = face < 0 ? -1 : face / 2;
+    const double at = face < 0 ? 0 : draft_.end_at(face);
     return {draft_,
             [=](const Vector<3>& p) { return Vector<3>((p - origin).dot(u), (p - origin).dot(v), 0); },
             [=](const Vector<3>& p) {
@@ -57,32 +75,36 @@ class FlatFaces {
   void make_face(std::uint32_t p, std::size_t c) {
     const DraftPiece& piece = draft_.pieces[p];
     const Circle& circle = piece.circles[c];
+    const Circle* within = circle_within(piece, circle);
+    if (within != nullptr && draft_.pieces[piece.within].is_copied) return;  // where prisms end
     SurfacePatch patch{SurfacePatch::Kind::cut_face, piece.piece.sphere, {draft_.region_of_piece(p), 0}};
     if (circle.kind == Circle::Kind::neck) patch.regions[1] = draft_.region_of_neck(circle.neck);
     if (circle.kind == Circle::Kind::end) {
-      patch.kind = SurfacePatch::Kind::period_end;
+      patch.kind = draft_.kind_of_ends();
       patch.index = static_cast<std::uint32_t>(circle.face);
       patch.regions[1] = SurfacePatch::nothing;
     }
     const std::uint32_t number = draft_.add_patch(patch);
-    if (circle.kind == Circle::Kind::end && circle.face % 2 == 1) {
+    if (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) {
       const int axis = circle.face / 2;
       std::array<int, 3> image = piece.piece.image;
       --image[static_cast<std::size_t>(axis)];
-      for (const FaceCorners& t : lower_.at({piece.piece.sphere, image, axis}))
+      for (const FaceCorners& t : lower_.at({piece.piece.sphere, image, axis, piece.layer}))
         draft_.add_triangle(number, draft_.lifted(axis, t[0]), draft_.lifted(axis, t[2]),
                             draft_.lifted(axis, t[1]));
       return;
     }
     PlanarPart part = part_of(circle, piece.piece.center);
     for (const auto& chain : circle.chains) part.add_chain(chain, circle.is_whole);
+    if (within != nullptr)
+      for (const auto& chain : within->chains) part.add_chain(chain, within->is_whole);
     for (const Chord& chord : piece.chords)
       if (chord.circles[0] == c || chord.circles[1] == c) part.add_chain(chord.ids, false);
     const double cap = draft_.sizes.at_caps(piece.piece.radius);
     part.mesh(number, false,
               circle.kind == Circle::Kind::contact ? [cap](const Vector<3>&) { return cap; } : size_in(p));
     if (circle.kind == Circle::Kind::end)
-      lower_[{piece.piece.sphere, piece.piece.image, circle.face / 2}] = part.triangles();
+      lower_[{piece.piece.sphere, piece.piece.image, circle.face / 2, piece.layer}] = part.triangles();
   }
 
   /// Where a neck stands on a wall.
@@ -96,8 +118,10 @@ class FlatFaces {
         },
         [&](const Vector<3>& p) { return foot_of(draft_, neck, p[0] * neck.across + p[1] * around); });
     part.add_chain(neck.rims[1], true);
-    part.mesh(draft_.add_patch(
-                  {SurfacePatch::Kind::wall, *neck.wall, {draft_.region_of_neck(n), SurfacePatch::nothing}}),
+    part.mesh(draft_.add_patch({SurfacePatch::Kind::wall,
+                                *neck.wall,
+                                {draft_.region_of_neck(n), SurfacePatch::nothing},
+                                shape_of_wall(draft_.solids.domain, *neck.wall)}),
               false, size_in(neck.pieces[0]));
   }
 
@@ -119,7 +143,7 @@ class FlatFaces {
     }
     Vector<3> origin = neck.center;
     origin[axis] = draft_.boundary.origin[axis];
-    PlanarPart part = part_in(-Vector<3>::Unit(axis), origin, axis);
+    PlanarPart part = part_in(-Vector<3>::Unit(axis), origin, 2 * axis);
     std::vector<std::uint32_t> ends;  // of what bounds it so far
     const auto add = [&](const std::vector<std::uint32_t>& chain, bool is_closed) {
       part.add_chain(chain, is_closed);
@@ -173,7 +197,8 @@ class FlatFaces {
 
   SurfaceDraft& draft_;
   std::map<std::tuple<std::uint32_t, std::array<int, 3>, int>, std::vector<FaceCorners>> lower_of_necks_;
-  std::map<std::tuple<std::uint32_t, std::array<int, 3>, int>, std::vector<FaceCorners>> lower_;
+  std::map<std::tuple<std::uint32_t, std::array<int, 3>, int, std::uint32_t>, std::vector<FaceCorners>>
+      lower_;
 };
 
 }  // namespace

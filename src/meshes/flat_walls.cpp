@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "bernal/cad/mesh_container.hpp"
+#include "domain/revolved_surface.hpp"
 #include "geometry/edges.hpp"
 #include "geometry/measures.hpp"
 #include "solids/flat_faces.hpp"
@@ -161,9 +163,10 @@ std::vector<FlatFeet::Foot> FlatFeet::near(const Vector<3>& c, double r, double 
   for (const NearFacet& near : facets) {
     if (!(near.distance * frame_.scale < reach)) continue;
     const std::uint32_t part = walls_.part_of_triangle[near.facet.id];
+    const Vector<3> point = closest_point(near.facet, at);
+    if ((point - at).dot(walls_.parts[part].outward) <= 0) continue;  // the far side of something thin
     const auto [entry, is_new] = of_part.try_emplace(part, Nearest{near.distance, {}});
-    if (is_new || near.distance < entry->second.distance)
-      entry->second = {near.distance, closest_point(near.facet, at)};
+    if (is_new || near.distance < entry->second.distance) entry->second = {near.distance, point};
   }
   std::vector<Foot> feet;
   for (const auto& [part, nearest] : of_part) {
@@ -182,8 +185,29 @@ double FlatFeet::radius_in(const Foot& foot, double asked, double edge) {
   return radius >= least_foot * asked ? radius : 0;
 }
 
+namespace {
+
+SolidsInWalls solids_in_facets(const Spheres<dynamic>& spheres, const Revolved& round,
+                               const SolidsOptions& options, double neck_edge, const Monitor& monitor) {
+  constexpr double deviation = 0.02;  // of a radius
+  constexpr double most_sides = 20000;
+  const double sides =
+      std::min(most_sides, sides_for(round, deviation * (spheres.empty() ? 1 : std::ranges::min(spheres.r))));
+  SolidsInWalls made =
+      solids_in_walls(spheres, surface_of(round, static_cast<int>(sides), RoundAs::circumscribed), options,
+                      neck_edge, monitor);
+  double largest = 0;
+  for (const Vector<2>& corner : round.profile) largest = std::max(largest, corner[0]);
+  made.wall_deviation = largest * (1 / std::cos(std::numbers::pi / sides) - 1);
+  return made;
+}
+
+}  // namespace
+
 SolidsInWalls solids_in_walls(const Spheres<dynamic>& spheres, const Domain& domain,
                               const SolidsOptions& options, double neck_edge, const Monitor& monitor) {
+  if (const auto* revolved = std::get_if<Revolved>(&domain); revolved != nullptr && revolved->inset == 0)
+    return solids_in_facets(spheres, *revolved, options, neck_edge, monitor);
   const auto* mesh = std::get_if<Mesh>(&domain);
   if (mesh == nullptr || options.contact != ContactTreatment::bridge)
     return {solids_of(spheres, domain, options, monitor)};
@@ -205,7 +229,9 @@ SolidsInWalls solids_in_walls(const Spheres<dynamic>& spheres, const Domain& dom
     ++made.gaps_at_edges;
     made.largest_shrink = std::max(made.largest_shrink, 1 - smaller.r[i] / r);
   }
-  made.solids = solids_of(smaller, domain, options, monitor);
+  SolidsOptions given = options;
+  given.shells = scaled(options.shells, spheres, smaller);
+  made.solids = solids_of(smaller, domain, given, monitor);
   return made;
 }
 

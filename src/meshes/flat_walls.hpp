@@ -48,7 +48,7 @@ class FlatFeet {
     /// is nearest to the centre, as far as it is below half a radius; 0 where that lies on an edge.
     double room = 0;
   };
-  /// The parts nearer than `reach` to c, in the order of their numbers.
+  /// The parts that face c, nearer than `reach`, in the order of their numbers.
   std::vector<Foot> near(const Vector<3>& c, double r, double reach) const;
 
   /// The largest radius of a bridge of neck_edge · r at its rim that stands in this room. 0: none.
@@ -63,9 +63,11 @@ class FlatFeet {
 /// Solids for a mesh of the pores. As `solids_of`, but for bridges in walls of triangles: a bridge stands
 /// within a planar part, half an edge from its border. A sphere that is nearer than the gap to a part where
 /// there is no room for at least half of the bridge's radius is made smaller, about its centre, until it has
-/// the gap from all walls.
+/// the gap from all walls. A solid of revolution becomes a mesh around it, whose flat sides touch it and
+/// stand off it by at most 2 % of the smallest radius between.
 struct SolidsInWalls {
   Solids solids;
+  double wall_deviation = 0;      ///< how far walls stand off those of the domain, as a length
   std::size_t gaps_at_edges = 0;  ///< how many spheres are smaller for that
   double largest_shrink = 0;      ///< of their radii, over the radius
 };

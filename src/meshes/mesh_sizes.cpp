@@ -75,6 +75,7 @@ double MeshSizes::floor_at(double gap, double scale, double least_radius) const 
 
 double MeshSizes::from_walls(const Vector<3>& p) const {
   double least = std::numeric_limits<double>::infinity();
+  if (solids_.is_cut) return least;
   if (const auto* box = std::get_if<Box>(&solids_.domain)) {
     for (int k = 0; k < 3; ++k)
       if (!box->repeats(k))
@@ -94,6 +95,12 @@ double MeshSizes::from_walls(const Vector<3>& p) const {
 
 double MeshSizes::from_ends(const Vector<3>& p) const {
   double least = std::numeric_limits<double>::infinity();
+  if (solids_.is_cut) {
+    const Box& box = std::get<Box>(solids_.domain);
+    for (int k = 0; k < 3; ++k)
+      least = std::min({least, std::abs(p[k] - box.corner[k]), std::abs(box.corner[k] + box.size[k] - p[k])});
+    return least;
+  }
   for (int k = 0; k < 3; ++k)
     if (boundary_.repeats(k))
       least = std::min({least, std::abs(p[k] - boundary_.origin[k]),

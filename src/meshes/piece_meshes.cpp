@@ -46,7 +46,8 @@ void add_chain(BoundedPart& patch, Numbering& number, const std::vector<std::uin
 PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
   const Vector<3> center = part.piece.center;
   const double r = part.piece.radius;
-  const std::vector<NearBall> near = draft.sizes.near(center, part.piece.sphere);
+  const std::vector<NearBall> near =
+      part.is_outer() ? draft.sizes.near(center, part.piece.sphere) : std::vector<NearBall>();
   const bool is_cut_at_end =
       std::ranges::any_of(part.circles, [](const Circle& c) { return c.kind == Circle::Kind::end; });
   struct Source {
@@ -65,12 +66,13 @@ PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
     if (on.empty()) patch.circles.pop_back();
     double edge = circle.edge;
     if (circle.kind != Circle::Kind::neck)
-      edge = std::min(draft.options.sphere_edge * r, std::numbers::pi / 4 * circle.radius);
+      edge =
+          std::min({draft.options.sphere_edge * r, part.largest_edge, std::numbers::pi / 4 * circle.radius});
     sources.push_back({&circle, edge});
   }
   for (const std::uint32_t id : number.ids()) patch.points.push_back(draft.made.vertices[id] - center);
   patch.size = [&](const Vector<3>& p) {
-    double size = draft.sizes.on_sphere(center + p, center, r, is_cut_at_end, near);
+    double size = draft.size_on(part, center + p, is_cut_at_end, near);
     for (const Source& source : sources)
       size = std::min(size, source.edge + MeshSizes::growth * distance_to_circle(p, *source.circle));
     return size;
@@ -107,6 +109,15 @@ void append(SurfaceDraft& draft, const PartMesh& part, std::uint32_t patch, bool
 
 }  // namespace
 
+SurfacePatch patch_of(const SurfaceDraft& draft, std::uint32_t p) {
+  const DraftPiece& part = draft.pieces[p];
+  return {.kind = part.is_outer() ? SurfacePatch::Kind::sphere : SurfacePatch::Kind::layer,
+          .index = part.piece.sphere,
+          .regions = {draft.region_of_piece(p), part.is_outer() ? 0 : draft.region_of_piece(part.around)},
+          .shape = {
+              .kind = RoundSurface::Kind::sphere, .center = part.piece.center, .radius = part.piece.radius}};
+}
+
 void mesh_pieces(SurfaceDraft& draft, const Monitor& monitor) {
   const Interruptible interruptible(monitor);
   constexpr std::size_t at_once = 4096;
@@ -114,13 +125,14 @@ void mesh_pieces(SurfaceDraft& draft, const Monitor& monitor) {
     const std::size_t n = std::min(at_once, draft.pieces.size() - from);
     std::vector<PartMesh> parts(n);
     parallel_ranges(n, 8, [&](std::size_t first, std::size_t last) {
-      for (std::size_t k = first; k < last; ++k) parts[k] = sphere_mesh(draft, draft.pieces[from + k]);
+      for (std::size_t k = first; k < last; ++k)
+        if (const DraftPiece& part = draft.pieces[from + k]; !part.is_copied)
+          parts[k] = sphere_mesh(draft, part);
     });
     for (std::size_t k = 0; k < n; ++k) {
       const auto p = static_cast<std::uint32_t>(from + k);
-      const std::uint32_t patch = draft.add_patch({.kind = SurfacePatch::Kind::sphere,
-                                                   .index = draft.pieces[p].piece.sphere,
-                                                   .regions = {draft.region_of_piece(p), 0}});
+      if (draft.pieces[p].is_copied) continue;
+      const std::uint32_t patch = draft.add_patch(patch_of(draft, p));
       append(draft, parts[k], patch);
       parts[k] = {};
     }
@@ -189,8 +201,13 @@ void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t pat
 void mesh_necks(SurfaceDraft& draft) {
   for (std::uint32_t n = 0; n < draft.necks.size(); ++n) {
     const DraftNeck neck = draft.necks[n];
-    const std::uint32_t patch = draft.add_patch(
-        {.kind = SurfacePatch::Kind::neck, .index = neck.bond, .regions = {draft.region_of_neck(n), 0}});
+    const std::uint32_t patch = draft.add_patch({.kind = SurfacePatch::Kind::neck,
+                                                 .index = neck.bond,
+                                                 .regions = {draft.region_of_neck(n), 0},
+                                                 .shape = {.kind = RoundSurface::Kind::cylinder,
+                                                           .center = neck.center,
+                                                           .axis = neck.axis,
+                                                           .radius = neck.radius}});
     if (neck.is_cut) {
       mesh_cut_neck(draft, neck, patch);
     } else {

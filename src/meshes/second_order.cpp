@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <unordered_map>
 
 #include "meshes/mesh_quality.hpp"
@@ -36,63 +38,83 @@ double sicn_of(const Eigen::Matrix3d& columns) {
 
 constexpr std::uint32_t none = 0xFFFFFFFF;
 
-struct RoundEdge {
-  std::int64_t sphere = -1;  ///< -1: on the side of a cylinder
-  bool has_plane = false, is_on_neck = false;
-  Vector<3> normal = Vector<3>::Zero();  ///< of the plane that it lies on, too
-};
-
 std::uint64_t key_of_edge(std::uint32_t a, std::uint32_t b) {
   return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
 }
 
-using RoundEdges = std::unordered_map<std::uint64_t, RoundEdge>;
+/// The surfaces that an edge of triangles lies on: patches and flat triangles, each kind of patch once.
+struct EdgeOnSurfaces {
+  static constexpr std::size_t most = 4;
+  std::array<std::uint32_t, most> triangle{};
+  std::size_t count = 0;
 
-RoundEdges round_edges(const VolumeMesh& mesh, bool is_cylinder) {
-  using Kind = SurfacePatch::Kind;
-  RoundEdges edges;
-  const auto is_side = [&](const SurfacePatch& patch) {
-    return is_cylinder && patch.kind == Kind::wall && patch.index == 0;
-  };
+  void add(const VolumeMesh& mesh, std::uint32_t t) {
+    for (std::size_t k = 0; k < count; ++k)
+      if (mesh.patch[triangle[k]] == mesh.patch[t]) return;
+    if (count < most) triangle[count++] = t;
+  }
+};
+
+using EdgesOnSurfaces = std::unordered_map<std::uint64_t, EdgeOnSurfaces>;
+
+/// The edges that lie on some round surface, with a triangle of each patch around.
+EdgesOnSurfaces round_edges(const VolumeMesh& mesh) {
+  EdgesOnSurfaces edges;
   for (const bool is_first : {true, false})
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const SurfacePatch& patch = mesh.patches[mesh.patch[t]];
-      if ((patch.kind == Kind::sphere || is_side(patch)) != is_first) continue;
-      const FaceCorners& c = mesh.triangles[t];
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (mesh.patches[mesh.patch[t]].shape.is_round() != is_first) continue;
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint64_t key = key_of_edge(c[k], c[(k + 1) % 3]);
-        if (is_first) {
-          // What lies on both a sphere and the side, a neck begins at.
-          const auto [edge, is_new] = edges.try_emplace(key);
-          const std::int64_t sphere = is_side(patch) ? -1 : std::int64_t{patch.index};
-          if (!is_new && edge->second.sphere != sphere) edge->second.is_on_neck = true;
-          edge->second.sphere = sphere;
-          continue;
-        }
-        const auto found = edges.find(key);
+        const std::uint64_t key = key_of_edge(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+        const auto found = is_first ? edges.try_emplace(key).first : edges.find(key);
         if (found == edges.end()) continue;
-        if (patch.kind == Kind::neck) {
-          found->second.is_on_neck = true;
-          continue;
-        }
-        found->second.has_plane = true;
-        found->second.normal = (mesh.vertices[c[1]] - mesh.vertices[c[0]])
-                                   .cross(mesh.vertices[c[2]] - mesh.vertices[c[0]])
-                                   .normalized();
+        found->second.add(mesh, t);
       }
     }
   return edges;
 }
 
-/// The point of the sphere that is nearest to the middle, in the plane if there is one.
-Vector<3> on_sphere(const Vector<3>& middle, const Vector<3>& center, double radius, const RoundEdge& edge) {
-  if (!edge.has_plane) return center + radius * (middle - center).normalized();
-  const double height = (middle - center).dot(edge.normal);
-  const Vector<3> foot = center + height * edge.normal;
-  const double squared = radius * radius - height * height;
-  const Vector<3> away = middle - foot;
-  if (!(squared > 0 && away.squaredNorm() > 0)) return middle;
-  return foot + std::sqrt(squared) * away.normalized();
+/// What a triangle stands for: of a flat one its plane.
+RoundSurface surface_of(const VolumeMesh& mesh, std::uint32_t t) {
+  const RoundSurface& shape = mesh.patches[mesh.patch[t]].shape;
+  if (shape.kind != RoundSurface::Kind::flat) return shape;
+  const FaceCorners& c = mesh.triangles[t];
+  const Vector<3>&p = mesh.vertices[c[0]], &q = mesh.vertices[c[1]], &r = mesh.vertices[c[2]];
+  return {.kind = RoundSurface::Kind::plane, .center = p, .axis = (q - p).cross(r - p).normalized()};
+}
+
+/// For each vertex a patch that is a sphere on which it lies, of those inside of spheres and around them.
+std::vector<std::uint32_t> spheres_of_vertices(const VolumeMesh& mesh) {
+  std::vector<std::uint32_t> of(mesh.vertices.size(), none);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const SurfacePatch& patch = mesh.patches[mesh.patch[t]];
+    if (patch.kind != SurfacePatch::Kind::sphere && patch.kind != SurfacePatch::Kind::layer) continue;
+    if (patch.shape.kind != RoundSurface::Kind::sphere) continue;
+    for (const std::uint32_t c : mesh.triangles[t]) of[c] = mesh.patch[t];
+  }
+  return of;
+}
+
+/// Half way between two spheres about one centre, if the ends of an edge lie on such.
+std::optional<RoundSurface> between_spheres(const VolumeMesh& mesh, std::uint32_t a, std::uint32_t b) {
+  if (a == none || b == none || a == b) return {};
+  const RoundSurface &one = mesh.patches[a].shape, &other = mesh.patches[b].shape;
+  if (one.center != other.center || one.radius == other.radius) return {};
+  RoundSurface between = one;
+  between.radius = (one.radius + other.radius) / 2;
+  return between;
+}
+
+/// The edges between two spheres about one centre that lie on flat triangles, with one of each patch around.
+EdgesOnSurfaces edges_across_layers(const VolumeMesh& mesh, const std::vector<std::uint32_t>& sphere) {
+  EdgesOnSurfaces edges;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (mesh.patches[mesh.patch[t]].shape.is_round()) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      if (between_spheres(mesh, sphere[a], sphere[b])) edges[key_of_edge(a, b)].add(mesh, t);
+    }
+  }
+  return edges;
 }
 
 using NumbersOfMiddles = std::unordered_map<std::uint64_t, std::uint32_t>;
@@ -136,24 +158,73 @@ struct Middles {
   }
 };
 
-/// Gives both middles the coordinates of the lower one but for the one along the axis, and lets both be
-/// straight where one is. Returns whether one has become straight.
-bool make_equal(VolumeMesh& mesh, Middles& middles, std::size_t axis,
-                const std::array<std::uint32_t, 2>& pair) {
-  const std::size_t low = pair[0] - mesh.vertices.size(), high = pair[1] - mesh.vertices.size();
-  const bool changes = middles.is_straight[low] != middles.is_straight[high];
-  if (changes) middles.straighten(mesh, middles.is_straight[low] ? pair[1] : pair[0]);
-  Vector<3> there = mesh.middles[low];
-  there[static_cast<int>(axis)] = mesh.middles[high][static_cast<int>(axis)];
-  mesh.middles[high] = there;
-  return changes;
+/// Gives upper middles the coordinates of the lower ones but for the one along the axis.
+void make_equal(VolumeMesh& mesh, const std::array<std::size_t, 3>& first_pair) {
+  // Those at the ends of several axes get them one axis after another, so that the last one is right, too.
+  for (int round = 0; round < 3; ++round)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t k = first_pair[axis]; k < mesh.periodic[axis].size(); ++k) {
+        const auto& [lower, upper] = mesh.periodic[axis][k];
+        Vector<3> there = mesh.middles[lower - mesh.vertices.size()];
+        Vector<3>& here = mesh.middles[upper - mesh.vertices.size()];
+        there[static_cast<int>(axis)] = here[static_cast<int>(axis)];
+        here = there;
+      }
 }
 
-/// The point of the side that is nearest to the middle.
-Vector<3> on_side(const Vector<3>& middle, const Cylinder& cylinder) {
-  const Vector<3> axis = cylinder.axis.normalized(), from = middle - cylinder.base;
-  const Vector<3> foot = cylinder.base + from.dot(axis) * axis;
-  return foot + cylinder.radius * (middle - foot).normalized();
+/// Whether middles lie on ends of periods, by axis.
+std::vector<std::array<std::uint8_t, 3>> ends_of_middles(const VolumeMesh& mesh) {
+  std::vector<std::array<std::uint8_t, 3>> on(mesh.middles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const SurfacePatch& patch = mesh.patches[mesh.patch[t]];
+    if (patch.kind != SurfacePatch::Kind::period_end) continue;
+    for (const std::uint32_t node : mesh.middles_of_triangle[t])
+      on[node - mesh.vertices.size()][patch.index / 2] = 1;
+  }
+  return on;
+}
+
+/// Whether a tetrahedron is not folded, and curved edges do not make it poor.
+bool is_good(const VolumeMesh& mesh, std::size_t t) {
+  constexpr double poor = 0.12;
+  if (!(least_jacobian_coefficient(mesh, t) > 0)) return false;
+  const double curved = curved_sicn(mesh, t);
+  if (curved >= poor) return true;
+  const TetrahedronCorners& c = mesh.tetrahedra[t];
+  return curved >= sicn(mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]], mesh.vertices[c[3]]);
+}
+
+/// Makes edges straight until no tetrahedron is folded or poor for them, as straight edges of one may fold
+/// its neighbours.
+void straighten_folded(VolumeMesh& mesh, Middles& middles, const std::array<std::size_t, 3>& first_pair) {
+  std::vector<std::uint8_t> is_new(mesh.middles.size(), 1), next;
+  for (bool changed = true; changed;) {
+    changed = false;
+    next.assign(mesh.middles.size(), 0);
+    const auto straighten = [&](std::uint32_t node) {
+      middles.straighten(mesh, node);
+      next[node - mesh.vertices.size()] = 1;
+      changed = true;
+    };
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+      const auto& nodes = mesh.middles_of_tetrahedron[t];
+      const auto place = [&](std::uint32_t node) { return node - mesh.vertices.size(); };
+      if (std::ranges::none_of(nodes, [&](std::uint32_t node) { return is_new[place(node)]; }) ||
+          std::ranges::all_of(nodes, [&](std::uint32_t node) { return middles.is_straight[place(node)]; }) ||
+          is_good(mesh, t))
+        continue;
+      for (const std::uint32_t node : nodes)
+        if (!middles.is_straight[place(node)]) straighten(node);
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t k = first_pair[axis]; k < mesh.periodic[axis].size(); ++k) {
+        const auto& pair = mesh.periodic[axis][k];
+        const std::size_t low = pair[0] - mesh.vertices.size(), high = pair[1] - mesh.vertices.size();
+        if (middles.is_straight[low] != middles.is_straight[high])
+          straighten(middles.is_straight[low] ? pair[1] : pair[0]);
+      }
+    is_new.swap(next);
+  }
 }
 
 }  // namespace
@@ -192,10 +263,38 @@ std::vector<double> curved_volumes_of_regions(const VolumeMesh& mesh) {
   return volumes;
 }
 
-CurvedEdges make_second_order(VolumeMesh& mesh, const Spheres<dynamic>& spheres, const Domain& domain) {
-  const auto* cylinder = std::get_if<Cylinder>(&domain);
-  const RoundEdges curved = round_edges(mesh, cylinder != nullptr);
-  const Boundary<3> boundary = boundary_of<3>(domain);
+double least_jacobian_coefficient(const VolumeMesh& mesh, std::size_t tetrahedron) {
+  // The derivative is the sum of l_i times its value at corner i, so the determinant is the sum over i, j, k
+  // of l_i l_j l_k times one with columns of three corners, and a coefficient the mean over their orders.
+  std::array<Eigen::Matrix3d, 4> at;
+  for (std::size_t i = 0; i < 4; ++i) {
+    Barycentric corner{};
+    corner[i] = 1;
+    at[i] = derivative(mesh, tetrahedron, corner);
+  }
+  std::array<double, 64> of{};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j) {
+      const Vector<3> across = at[i].col(0).cross(at[j].col(1));
+      for (std::size_t k = 0; k < 4; ++k) of[16 * i + 4 * j + k] = across.dot(at[k].col(2));
+    }
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i; j < 4; ++j)
+      for (std::size_t k = j; k < 4; ++k) {
+        const auto value = [&](std::size_t a, std::size_t b, std::size_t c) {
+          return of[16 * a + 4 * b + c];
+        };
+        least = std::min(least, value(i, j, k) + value(i, k, j) + value(j, i, k) + value(j, k, i) +
+                                    value(k, i, j) + value(k, j, i));
+      }
+  return least / 6;
+}
+
+CurvedEdges make_second_order(VolumeMesh& mesh) {
+  const EdgesOnSurfaces curved = round_edges(mesh);
+  const std::vector<std::uint32_t> sphere = spheres_of_vertices(mesh);
+  const EdgesOnSurfaces across = edges_across_layers(mesh, sphere);
   CurvedEdges made;
   NumbersOfMiddles number;
   Middles middles;
@@ -204,20 +303,9 @@ CurvedEdges make_second_order(VolumeMesh& mesh, const Spheres<dynamic>& spheres,
     const auto [found, is_new] =
         number.try_emplace(key_of_edge(a, b), static_cast<std::uint32_t>(mesh.node_count()));
     if (!is_new) return found->second;
-    Vector<3> middle = (mesh.vertices[a] + mesh.vertices[b]) / 2;
-    if (const auto edge = curved.find(found->first); edge != curved.end() && !edge->second.is_on_neck) {
-      if (edge->second.sphere < 0) {
-        middle = on_side(middle, *cylinder);
-      } else {
-        const auto sphere = static_cast<std::size_t>(edge->second.sphere);
-        // The image of the centre that is nearest.
-        const Vector<3> center = middle - boundary.minimum_image(middle - Vector<3>(spheres.center(sphere)));
-        middle = on_sphere(middle, center, spheres.r[sphere], edge->second);
-      }
-      ++made.curved;
-    }
-    mesh.middles.push_back(middle);
+    mesh.middles.push_back((mesh.vertices[a] + mesh.vertices[b]) / 2);
     middles.ends.push_back({a, b});
+    middles.is_straight.push_back(1);
     return found->second;
   };
   mesh.middles_of_tetrahedron.resize(mesh.tetrahedra.size());
@@ -230,23 +318,35 @@ CurvedEdges make_second_order(VolumeMesh& mesh, const Spheres<dynamic>& spheres,
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       mesh.middles_of_triangle[t][k] = middle_of(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-  const std::array<std::size_t, 3> first_pair = pair_middles(mesh, number);
-  middles.is_straight.assign(mesh.middles.size(), 0);
-  // Straight edges of one may turn its neighbours: until all are right.
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t k = first_pair[axis]; k < mesh.periodic[axis].size(); ++k)
-        changed |= make_equal(mesh, middles, axis, mesh.periodic[axis][k]);
-    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-      if (curved_sicn(mesh, t) > 0) continue;
-      for (const std::uint32_t node : mesh.middles_of_tetrahedron[t]) {
-        if (middles.is_straight[node - mesh.vertices.size()]) continue;
-        middles.straighten(mesh, node);
-        changed = true;
-      }
+  const std::vector<std::array<std::uint8_t, 3>> ends = ends_of_middles(mesh);
+  for (std::size_t k = 0; k < mesh.middles.size(); ++k) {
+    const auto [a, b] = middles.ends[k];
+    std::vector<RoundSurface> surfaces;
+    const auto add_all = [&](const EdgesOnSurfaces& edges) {
+      const auto on = edges.find(key_of_edge(a, b));
+      if (on == edges.end()) return false;
+      for (std::size_t t = 0; t < on->second.count; ++t)
+        surfaces.push_back(surface_of(mesh, on->second.triangle[t]));
+      return true;
+    };
+    if (add_all(curved)) {
+      ++made.curved;
+    } else if (const auto between = between_spheres(mesh, sphere[a], sphere[b])) {
+      surfaces.push_back(*between);
+      add_all(across);
+    } else {
+      continue;
     }
+    std::optional<Vector<3>> there = point_on_all(surfaces, mesh.middles[k]);
+    if (!there) continue;
+    for (int axis = 0; axis < 3; ++axis)
+      if (ends[k][static_cast<std::size_t>(axis)]) (*there)[axis] = mesh.vertices[a][axis];
+    mesh.middles[k] = *there;
+    middles.is_straight[k] = 0;
   }
+  const std::array<std::size_t, 3> first_pair = pair_middles(mesh, number);
+  make_equal(mesh, first_pair);
+  straighten_folded(mesh, middles, first_pair);
   for (std::size_t k = 0; k < middles.ends.size(); ++k)
     made.kept_straight +=
         middles.is_straight[k] && curved.contains(key_of_edge(middles.ends[k][0], middles.ends[k][1]));

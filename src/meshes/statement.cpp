@@ -2,8 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <span>
+#include <utility>
 
 #include "meshes/surface_draft.hpp"
+#include "solids/cut_out.hpp"
 
 namespace bernal {
 
@@ -21,11 +25,71 @@ Vector<3> inner_point(const Piece& piece) {
   return point;
 }
 
+namespace {
+
+double volume_of_ball(double radius) { return 4 * std::numbers::pi / 3 * radius * radius * radius; }
+
+/// The volume of a ball in the domain: of all its images together.
+double volume_within(const SurfaceDraft& draft, const Vector<3>& center, double radius) {
+  return draft.solids.is_cut ? volume_in_box(center, radius, bounds_of(draft.solids.domain))
+                             : volume_of_ball(radius);
+}
+
+/// What necks take of each sphere, and the volume of each neck with that; 0 for images of others.
+struct NeckVolumes {
+  std::vector<double> of_sphere, of_neck;
+};
+NeckVolumes neck_volumes(const SurfaceDraft& draft) {
+  NeckVolumes made{std::vector<double>(draft.solids.spheres.size(), 0.0), {}};
+  std::vector<char> counted(draft.made.necks.size(), 0);
+  for (std::uint32_t n = 0; n < draft.necks.size(); ++n) {
+    const DraftNeck& neck = draft.necks[n];
+    made.of_neck.push_back(0);
+    if (std::exchange(counted[neck.bond], 1)) continue;
+    made.of_neck[n] = neck.volume;
+    for (std::size_t e = 0; e < (neck.wall ? 1u : 2u); ++e) {
+      const double r = draft.solids.spheres.r[neck.spheres[e]];
+      const double cap = cap_volume(r, r - (e == 0 ? neck.begin : neck.distance - neck.end));
+      made.of_neck[n] += cap;
+      made.of_sphere[neck.spheres[e]] += cap;
+    }
+  }
+  return made;
+}
+
+double volume_of_spheres(const SurfaceDraft& draft) {
+  if (!draft.solids.is_cut) return volume_of_balls(draft.solids.spheres);
+  double sum = 0;
+  for (const Piece& piece : draft.solids.pieces) sum += volume_within(draft, piece.center, piece.radius);
+  return sum;
+}
+
+}  // namespace
+
 void add_regions(SurfaceDraft& draft) {
-  draft.made.regions.push_back({"fluid", {}});
+  std::vector<MeshRegion>& regions = draft.made.regions;
+  regions.push_back({"fluid", {}});
   if (!draft.options.solids) return;
-  for (const DraftPiece& piece : draft.pieces) draft.made.regions.push_back({"spheres", piece.piece.sphere});
-  draft.made.regions.insert(draft.made.regions.end(), draft.necks.size(), MeshRegion{"bridges", {}});
+  const bool is_capped = draft.solids.contacts.treatment == ContactTreatment::cap;
+  const NeckVolumes necks = neck_volumes(draft);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> counted;
+  for (const DraftPiece& piece : draft.pieces) {
+    const std::uint32_t sphere = piece.piece.sphere;
+    const std::span<const double> shells = draft.solids.shells.of(sphere);
+    MeshRegion& region = regions.emplace_back("spheres", sphere);
+    if (!shells.empty()) region.layer = piece.layer;
+    if (is_capped && piece.is_outer()) continue;
+    region.volume = 0;
+    if (!counted.insert({sphere, piece.layer}).second) continue;
+    const Vector<3>& center = piece.piece.center;
+    region.volume = volume_within(draft, center, piece.piece.radius) -
+                    (piece.layer > 0 ? volume_within(draft, center, shells[piece.layer - 1]) : 0.0) -
+                    (piece.is_outer() ? necks.of_sphere[sphere] : 0.0);
+  }
+  for (const double volume : necks.of_neck) {
+    regions.emplace_back("bridges");
+    if (!is_capped) regions.back().volume = volume;
+  }
 }
 
 void state(SurfaceDraft& draft) {
@@ -56,8 +120,8 @@ void state(SurfaceDraft& draft) {
   statement.meshed_fluid_volume = six / 6;
   const ContactReport& contacts = draft.solids.contacts;
   const bool is_capped = contacts.treatment == ContactTreatment::cap;
-  statement.fluid_volume = volume_of(draft.solids.domain) -
-                           (is_capped ? contacts.volume_after : volume_of_balls(draft.solids.spheres));
+  statement.fluid_volume =
+      volume_of(draft.solids.domain) - (is_capped ? contacts.volume_after : volume_of_spheres(draft));
   if (is_capped) {
     statement.contact_area = contacts.contact_area + draft.deepened.area;
     statement.fluid_volume += draft.deepened.volume;
@@ -65,6 +129,7 @@ void state(SurfaceDraft& draft) {
   std::vector<char> counted(made.necks.size(), 0);
   for (const DraftNeck& neck : draft.necks)
     if (!std::exchange(counted[neck.bond], 1)) statement.fluid_volume -= neck.volume;
+  if (!made.regions.empty()) made.regions.front().volume = statement.fluid_volume;
 }
 
 }  // namespace bernal

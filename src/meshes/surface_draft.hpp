@@ -27,6 +27,7 @@ struct Circle {
   /// Parts outside of the other circles of the piece, counterclockwise about the normal; a whole circle does
   /// not repeat its first point.
   std::vector<std::vector<std::uint32_t>> chains = {};
+  std::vector<std::size_t> chains_around = {};  ///< of a copied piece: which ones of the piece around it
   bool is_whole = false;
 };
 
@@ -36,10 +37,20 @@ struct Chord {
   std::vector<std::uint32_t> ids;
 };
 
+/// A piece of a sphere, or of the sphere within it in which one of its layers begins.
 struct DraftPiece {
+  static constexpr std::uint32_t none = 0xFFFFFFFF;
   Piece piece;
   std::vector<Circle> circles = {};
   std::vector<Chord> chords = {};
+  std::uint32_t layer = 0;                     ///< what is behind it, from the centre out
+  std::uint32_t below = 0;                     ///< so many layers below the surface
+  std::uint32_t around = none, within = none;  ///< the next piece outwards and inwards, with its centre
+  /// Its triangles are those of the piece around it, brought inwards, with prisms between.
+  bool is_copied = false;
+  double largest_edge = std::numeric_limits<double>::infinity();  ///< that its layers ask for
+
+  bool is_outer() const { return around == none; }
 };
 
 /// Where the side of a neck meets an end of a period.
@@ -78,16 +89,13 @@ struct DraftNeck {
 /// A surface in the making.
 struct SurfaceDraft {
   SurfaceDraft(const Solids& given, const SurfaceMeshOptions& asked)
-      : solids(given), options(asked), boundary(boundary_of<3>(given.domain)), sizes(given, asked) {
-    for (const Piece& piece : solids.pieces) {
-      numbers_[{piece.sphere, piece.image}] = static_cast<std::uint32_t>(pieces.size());
-      pieces.push_back({piece});
-    }
+      : solids(given), options(asked), boundary(ends_of(given)), sizes(given, asked) {
+    for (const Piece& piece : solids.pieces) add_piece({piece});
   }
 
   const Solids& solids;
   const SurfaceMeshOptions& options;
-  Boundary<3> boundary;
+  Boundary<3> boundary;  ///< the ends of periods, or of a box that is cut out
   MeshSizes sizes;
   std::optional<FlatWalls> flat_walls = {};  ///< of a mesh
   std::vector<DraftPiece> pieces = {};
@@ -99,9 +107,17 @@ struct SurfaceDraft {
   } deepened = {};
 
   /// The piece that is an image of a sphere; `Delaunay::none` where that does not reach into the domain.
-  std::uint32_t piece_at(std::uint32_t sphere, const std::array<int, 3>& image) const {
-    const auto found = numbers_.find({sphere, image});
+  /// `below`: so many layers below the surface.
+  std::uint32_t piece_at(std::uint32_t sphere, const std::array<int, 3>& image,
+                         std::uint32_t below = 0) const {
+    const auto found = numbers_.find({sphere, image, below});
     return found == numbers_.end() ? Delaunay::none : found->second;
+  }
+  std::uint32_t add_piece(DraftPiece piece) {
+    const auto number = static_cast<std::uint32_t>(pieces.size());
+    numbers_[{piece.piece.sphere, piece.piece.image, piece.below}] = number;
+    pieces.push_back(std::move(piece));
+    return number;
   }
   std::uint32_t add_vertex(const Vector<3>& p, double size) {
     made.vertices.push_back(p);
@@ -125,6 +141,14 @@ struct SurfaceDraft {
     }
     return entry->second;
   }
+  /// Whether what is at this end is copied from the opposite end of a period.
+  bool is_lifted(int face) const { return face % 2 == 1 && !solids.is_cut; }
+  double end_at(int face) const {
+    return boundary.origin[face / 2] + (face % 2 == 1 ? boundary.edges[face / 2] : 0.0);
+  }
+  SurfacePatch::Kind kind_of_ends() const {
+    return solids.is_cut ? SurfacePatch::Kind::wall : SurfacePatch::Kind::period_end;
+  }
   std::uint32_t add_patch(const SurfacePatch& patch) {
     made.patches.push_back(patch);
     return static_cast<std::uint32_t>(made.patches.size() - 1);
@@ -133,15 +157,34 @@ struct SurfaceDraft {
     made.triangles.push_back({a, b, c});
     made.patch.push_back(patch);
   }
+  /// What is between a piece and the one within it.
   std::int32_t region_of_piece(std::uint32_t piece) const {
     return options.solids ? static_cast<std::int32_t>(1 + piece) : SurfacePatch::nothing;
+  }
+  /// As `per_gap`, between spheres in which layers begin and ends that pass by: both sides are fixed there.
+  double per_gap_of_layers() const { return std::min(options.per_gap, 2.0); }
+  /// The length of edges on a piece at a point, in the scene.
+  double size_on(const DraftPiece& of, const Vector<3>& p, bool is_cut_at_end,
+                 const std::vector<NearBall>& near) const {
+    const double r = of.piece.radius;
+    if (of.is_outer())
+      return std::min(of.largest_edge, sizes.on_sphere(p, of.piece.center, r, is_cut_at_end, near));
+    const double size = std::min(of.largest_edge, options.sphere_edge * r);
+    return is_cut_at_end ? size
+                         : std::max(std::min(size, per_gap_of_layers() * sizes.from_ends(p)), 1e-4 * r);
   }
   std::int32_t region_of_neck(std::uint32_t neck) const {
     return options.solids ? static_cast<std::int32_t>(1 + pieces.size() + neck) : SurfacePatch::nothing;
   }
 
  private:
-  std::map<std::pair<std::uint32_t, std::array<int, 3>>, std::uint32_t> numbers_;
+  static Boundary<3> ends_of(const Solids& of) {
+    if (!of.is_cut) return boundary_of<3>(of.domain);
+    const Box& box = std::get<Box>(of.domain);
+    return {.edges = box.size, .origin = box.corner};
+  }
+
+  std::map<std::tuple<std::uint32_t, std::array<int, 3>, std::uint32_t>, std::uint32_t> numbers_;
   std::map<std::array<double, 3>, std::uint32_t> at_;
   std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 3> lifted_;
 };
@@ -152,6 +195,11 @@ void deepen_caps(SurfaceDraft&);
 /// narrower or wider where ends of periods would nearly touch them, and puts their circles on the pieces and,
 /// where no end cuts them, points on these.
 void add_necks(SurfaceDraft&);
+/// Adds the spheres within spheres in which their layers begin, after `add_necks`. Throws where a neck or a
+/// cap reaches through a layer.
+void add_shells(SurfaceDraft&);
+/// Triangles of spheres that are copied from those around them, with prisms between, after `mesh_flat_faces`.
+void mesh_copied_shells(SurfaceDraft&);
 /// The points of all other circles; those at opposite ends are the same but for the period.
 void add_circles(SurfaceDraft&);
 /// Where necks meet ends of periods, with the same points at opposite ends. After their circles.
@@ -164,10 +212,14 @@ double clearance_of_ends(const Boundary<3>&, const Vector<3>& center, double sph
 Vector<3> foot_of(const SurfaceDraft&, const DraftNeck&, const Vector<3>& beside);
 /// Triangles of the sides of necks.
 void mesh_necks(SurfaceDraft&);
+/// The patch of a piece's sphere.
+SurfacePatch patch_of(const SurfaceDraft&, std::uint32_t piece);
 /// Triangles of the spheres.
 void mesh_pieces(SurfaceDraft&, const Monitor&);
 /// Triangles of flat faces of caps and, with solids, of spheres at the ends of periods and of necks' ends.
 void mesh_flat_faces(SurfaceDraft&);
+/// What a wall is, by its number as in SurfacePatch.
+RoundSurface shape_of_wall(const Domain&, std::uint32_t wall);
 /// Triangles of the walls and ends of periods.
 void mesh_box(SurfaceDraft&, const Box&);
 void mesh_cylinder(SurfaceDraft&, const Cylinder&);

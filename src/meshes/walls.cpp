@@ -18,7 +18,8 @@ void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, 
     for (const DraftPiece& piece : draft.pieces)
       for (std::size_t c = 0; c < piece.circles.size(); ++c) {
         const Circle& circle = piece.circles[c];
-        if (circle.kind != Circle::Kind::end || circle.face != static_cast<int>(face)) continue;
+        if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != static_cast<int>(face))
+          continue;
         for (const auto& chain : circle.chains) part.add_chain(chain, circle.is_whole);
         for (const Chord& chord : piece.chords) {  // where caps begin
           if (chord.circles[0] != c && chord.circles[1] != c) continue;
@@ -55,7 +56,7 @@ bool is_in_neck(const DraftNeck& neck, const Vector<3>& p) {
 
 class BoxWalls {
  public:
-  BoxWalls(SurfaceDraft& draft, const Box& box) : draft_(draft) {
+  BoxWalls(SurfaceDraft& draft, const Box& box) : draft_(draft), is_cut_(draft.solids.is_cut) {
     for (int k = 0; k < 3; ++k) {
       repeats_[k] = box.repeats(k);
       ends_[0][k] = box.corner[k];
@@ -72,28 +73,29 @@ class BoxWalls {
   }
 
  private:
+  bool cuts_spheres(int axis) const { return repeats_[static_cast<std::size_t>(axis)] || is_cut_; }
   std::vector<std::vector<std::uint32_t>>& line(int m, int a, int b) {
     return lines_[static_cast<std::size_t>(4 * m + 2 * b + a)];
   }
 
-  /// Where spheres, caps and necks cross the edge along axis m, at the lower ends of k and l.
+  /// Where spheres, caps and necks cross an edge of the box along axis m.
   struct Crossings {
     std::set<std::pair<double, std::uint32_t>> at = {};
     std::vector<const Piece*> pieces = {};  ///< that may lie on it
   };
-  Crossings crossings_of(int k, int l, int m) const {
+  Crossings crossings_of(int face, int l, double level, int m) const {
     Crossings found;
     const auto add_ends = [&](const std::vector<std::uint32_t>& chain) {
       for (const std::uint32_t id : {chain.front(), chain.back()})
-        if (const Vector<3>& p = draft_.made.vertices[id]; p[l] == ends_[0][l]) found.at.insert({p[m], id});
+        if (const Vector<3>& p = draft_.made.vertices[id]; p[l] == level) found.at.insert({p[m], id});
     };
     for (const DraftNeck& neck : draft_.necks)
       for (const NeckTrace& trace : neck.traces)
-        if (trace.face == 2 * k && !trace.is_closed) add_ends(trace.ids);
+        if (trace.face == face && !trace.is_closed) add_ends(trace.ids);
     for (const DraftPiece& piece : draft_.pieces)
       for (std::size_t c = 0; c < piece.circles.size(); ++c) {
         const Circle& circle = piece.circles[c];
-        if (circle.kind != Circle::Kind::end || circle.face != 2 * k) continue;
+        if (!piece.is_outer() || circle.kind != Circle::Kind::end || circle.face != face) continue;
         found.pieces.push_back(&piece.piece);
         if (!circle.is_whole)
           for (const auto& chain : circle.chains) add_ends(chain);
@@ -125,10 +127,11 @@ class BoxWalls {
       return at;
     };
     const auto size = [&](double x) {
-      return std::min(draft_.sizes.on_wall(point(x), Vector<3>::Unit(k), repeats_[k]),
-                      draft_.sizes.on_wall(point(x), Vector<3>::Unit(l), repeats_[l]));
+      return std::min(draft_.sizes.on_wall(point(x), Vector<3>::Unit(k), cuts_spheres(k)),
+                      draft_.sizes.on_wall(point(x), Vector<3>::Unit(l), cuts_spheres(l)));
     };
-    const auto crossings = repeats_[k] && repeats_[l] ? crossings_of(k, l, m) : Crossings{};
+    const auto crossings =
+        cuts_spheres(k) && cuts_spheres(l) ? crossings_of(2 * k + a, l, at[l], m) : Crossings{};
     const double lower = ends_[0][m], upper = ends_[1][m];
     const std::uint32_t first = draft_.vertex_at(point(lower), size(lower));
     const std::uint32_t last =
@@ -171,11 +174,12 @@ class BoxWalls {
       for (const auto& chain : line(v, side, s)) part.add_chain(chain, false);
     }
     const auto face = static_cast<std::uint32_t>(2 * k + side);
-    add_circles_of(draft_, face, repeats_[k], false, part);
+    add_circles_of(draft_, face, cuts_spheres(k), false, part);
     const auto kind = repeats_[k] ? SurfacePatch::Kind::period_end : SurfacePatch::Kind::wall;
     const std::uint32_t patch = draft_.add_patch({kind, face, {0, SurfacePatch::nothing}});
-    part.mesh(patch, side == 0,
-              [&](const Vector<3>& p) { return draft_.sizes.on_wall(p, Vector<3>::Unit(k), repeats_[k]); });
+    part.mesh(patch, side == 0, [&](const Vector<3>& p) {
+      return draft_.sizes.on_wall(p, Vector<3>::Unit(k), cuts_spheres(k));
+    });
     if (!repeats_[k]) return;
     const std::uint32_t opposite = draft_.add_patch({kind, face + 1, {0, SurfacePatch::nothing}});
     for (const FaceCorners& t : part.triangles())
@@ -183,12 +187,24 @@ class BoxWalls {
   }
 
   SurfaceDraft& draft_;
+  bool is_cut_;  ///< whether faces cut spheres without being ends of periods
   std::array<bool, 3> repeats_{};
   std::array<Vector<3>, 2> ends_;
   std::array<std::vector<std::vector<std::uint32_t>>, 12> lines_;
 };
 
 }  // namespace
+
+RoundSurface shape_of_wall(const Domain& domain, std::uint32_t wall) {
+  if (const auto* sphere = std::get_if<Sphere>(&domain))
+    return {.kind = RoundSurface::Kind::sphere, .center = sphere->center, .radius = sphere->radius};
+  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  if (cylinder == nullptr || wall != 0) return {};
+  return {.kind = RoundSurface::Kind::cylinder,
+          .center = cylinder->base,
+          .axis = cylinder->axis.normalized(),
+          .radius = cylinder->radius};
+}
 
 void mesh_box(SurfaceDraft& draft, const Box& box) { BoxWalls(draft, box).mesh(); }
 
@@ -246,7 +262,8 @@ void mesh_cylinder(SurfaceDraft& draft, const Cylinder& cylinder) {
       [&](const Vector<3>& p) { return on_side(p[0] / radius, p[1]); });
   for (const auto& rim : rims) side.add_chain(rim, true);
   add_circles_of(draft, 0, false, true, side);
-  const std::uint32_t side_patch = draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}});
+  const std::uint32_t side_patch =
+      draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}, shape_of_wall(cylinder, 0)});
   const double margin = std::min(6 * draft.options.sphere_edge * draft.sizes.largest_radius(), pi * radius);
   side.mesh(side_patch, false, side_size, 2 * pi * radius, margin);
 
@@ -300,7 +317,8 @@ void mesh_ball(SurfaceDraft& draft, const Sphere& sphere) {
   }
   const PatchMesh mesh = mesh_patch(patch);
   for (const Vector<3>& p : mesh.added) ids.push_back(draft.add_vertex(sphere.center + p, patch.size(p)));
-  const std::uint32_t number = draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}});
+  const std::uint32_t number =
+      draft.add_patch({SurfacePatch::Kind::wall, 0, {0, SurfacePatch::nothing}, shape_of_wall(sphere, 0)});
   for (const FaceCorners& t : mesh.triangles) draft.add_triangle(number, ids[t[0]], ids[t[1]], ids[t[2]]);
 }
 

@@ -261,7 +261,23 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
   return bridges;
 }
 
+/// The spheres, and those within them as if they were others.
+Spheres<dynamic> with_shells(const Spheres<dynamic>& spheres, const Shells& shells) {
+  Spheres<dynamic> all = spheres;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for (const double radius : shells.of(i)) all.push_back(spheres.center(i), radius);
+  return all;
+}
+
 }  // namespace
+
+Shells scaled(Shells shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after) {
+  if (shells.first.empty()) return shells;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    for (std::size_t k = shells.first[i]; k < shells.first[i + 1]; ++k)
+      shells.radius[k] *= after.r[i] / before.r[i];
+  return shells;
+}
 
 double cap_volume(double radius, double height) {
   return std::numbers::pi / 3 * height * height * (3 * radius - height);
@@ -285,7 +301,8 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
       for (const NearWall& wall : near_walls(made.spheres, domain, options.gap, nullptr))
         feet.push_back({wall.sphere, options.bridge_radius * made.spheres.r[wall.sphere]});
   }
-  const ClearEnds ends = with_clear_ends(made.spheres, domain, bridges, feet);
+  made.shells = scaled(options.shells, spheres, made.spheres);
+  const ClearEnds ends = with_clear_ends(with_shells(made.spheres, made.shells), domain, bridges, feet);
   made.end_distance = ends.distance;
   made.domain = ends.domain;
   wrap(made.spheres, made.domain);
@@ -296,6 +313,7 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
       ContactReport again =
           shrink_contacts(made.spheres, made.domain, options.contact, options.gap, false, monitor);
       made.contacts.volume_after = again.volume_after;
+      made.shells = scaled(options.shells, spheres, made.spheres);
       made.pieces = pieces_of(made.spheres, made.domain);
     }
     return made;

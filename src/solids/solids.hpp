@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "solids/contacts.hpp"
@@ -19,6 +20,20 @@ struct Bridge {
   double reach_along(int axis) const;
 };
 
+/// Spheres within spheres, with the same centres, in which layers begin: radii that ascend, by sphere.
+struct Shells {
+  std::vector<std::size_t> first = {};  ///< one entry a sphere, and one more, or none without any
+  std::vector<double> radius = {};
+
+  std::span<const double> of(std::size_t sphere) const {
+    if (first.empty()) return {};
+    return {radius.data() + first[sphere], radius.data() + first[sphere + 1]};
+  }
+};
+
+/// Shells of spheres that have other radii now.
+Shells scaled(Shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after);
+
 /// The solids for a mesher: each once, cut at the ends of the periods.
 struct Solids {
   Spheres<dynamic> spheres{};  ///< after shrinking, if any; centres in the period
@@ -30,12 +45,16 @@ struct Solids {
   /// infinite without periods.
   double end_distance = 0;
   double bridge_radius = 0;  ///< as asked for, over the radius of the smaller sphere
+  Shells shells = {};        ///< which shrink as their spheres do
+  /// Whether the domain is a box cut out of a packing: without periods, and its faces cut spheres.
+  bool is_cut = false;
 };
 
 struct SolidsOptions {
   ContactTreatment contact = ContactTreatment::none;
   double gap = 0.01;
   double bridge_radius = 0.2;
+  Shells shells = {};
 };
 
 /// Prepares spheres for a mesher. Proven, in exact arithmetic on the given doubles: for gap and shrink what
@@ -59,8 +78,8 @@ struct WallFoot {
 /// The domain with the ends of its periods where no sphere nearly touches them: no face, edge or corner of
 /// the box a sphere (relative to the radius), no face a bridge. On each axis the candidates are the middles
 /// of the widest gaps between extents, past feet of bridges if there is such a place; the best combination is
-/// taken. The spheres do not move; `wrap` moves their centres into the period. Deterministic. Cost: O(N log
-/// N) and some million distances.
+/// taken. The spheres do not move; `wrap` moves their centres into the period. Deterministic. Cost:
+/// O(N log N) and some million distances, in proportion to the square of `most`, the places tried on an axis.
 struct ClearEnds {
   Domain domain;
   double distance;  ///< least, over the radius; infinite without periods

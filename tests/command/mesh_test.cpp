@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,17 @@ height = 2.5
 [spheres]
 count = 5
 diameter = 1
+)";
+
+constexpr const char* layered_spheres = R"(unit = "mm"
+[container]
+kind = "periodic"
+[spheres]
+count = 12
+packing_fraction = 0.35
+radius = 1
+gap = 0.1
+layers = [{ name = "core" }, { name = "thin coat", thickness = 0.1 }]
 )";
 
 struct Packed {
@@ -65,6 +77,45 @@ TEST(MeshCommand, ElementsOfSecondOrderHoldTheStatedPorosity) {
   const auto report = nlohmann::json::parse(ended.out);
   EXPECT_GT(report["least_curved_sicn"], 0);
   EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 1e-4);
+}
+
+TEST(MeshCommand, LayersAreRegionsOfTheStatedVolumes) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Folder folder;
+  const Ended packed = bernal(
+      {"pack", folder.write("scene.toml", std::string(layered_spheres)).string(), "-o", folder / "out"});
+  ASSERT_EQ(packed.status, 0) << packed.err;
+  const auto mesh = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {
+        "mesh", folder / "out", "--to", "abaqus", "-o", folder / "rve.inp", "--contact", "gap", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ended ended = bernal(words);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  };
+  const auto report = mesh({"--regions", "all", "--order", "2"});
+  EXPECT_GE(report["least_curved_sicn"], 0.1);
+  std::map<std::string, nlohmann::json> groups;
+  for (const auto& group : report["groups"]) groups[group["name"]] = group;
+  ASSERT_EQ(groups.size(), 3U);
+  for (const char* name : {"fluid", "layer_core", "layer_thin_coat"}) {
+    ASSERT_TRUE(groups.contains(name)) << name;
+    EXPECT_NEAR(groups[name]["volume"].get<double>() / groups[name]["stated_volume"].get<double>(), 1, 2e-4);
+  }
+  const double ball = 4 * 3.14159265358979 / 3 * 12;
+  EXPECT_NEAR(groups["layer_core"]["stated_volume"].get<double>(), ball * 0.9 * 0.9 * 0.9, 1e-9);
+  EXPECT_TRUE(fs::exists(folder / "rve.inp"));
+  EXPECT_EQ(mesh({})["groups"].size(), 1U);  // the fluid alone
+  const auto part = mesh({"--regions", "all", "--cut", "x = 1..4, y = 0 mm..3 mm, z = 2..4"});
+  EXPECT_NEAR(part["domain_volume"].get<double>(), 18, 1e-12);
+  EXPECT_GT(part["clipped"], 0);
+  double stated = 0;
+  for (const auto& group : part["groups"]) stated += group["stated_volume"].get<double>();
+  EXPECT_NEAR(stated, 18, 1e-9);
+  for (const char* box : {"x = 1..4", "x = 1..4, x = 1..4, z = 2..4", "x + y = 1..4, y = 0..3, z = 2..4"})
+    expect_refused_in_one_line(bernal({"mesh", folder / "out", "--to", "gmsh", "-o", folder / "a.msh",
+                                       "--contact", "gap", "--cut", box}),
+                               {"cut"});
 }
 
 TEST(MeshCommand, CadPartsKeepTheirVolumeInTheMesh) {

@@ -96,6 +96,21 @@ TEST(FlatWalls, SpheresWithoutRoomForABridgeGetAGap) {
   EXPECT_EQ(solids_in_walls(spheres, hopper, {.contact = ContactTreatment::none}, 0.15).gaps_at_edges, 0u);
 }
 
+TEST(FlatWalls, SolidsOfRevolutionAreWithinFacets) {
+  const Revolved cone{.profile = {{0, 0}, {1, 0}, {2, 3}, {0, 3}}};
+  Spheres<dynamic> spheres(3);
+  spheres.push_back(Vector<3>(0, 0, 1), 0.5);
+  const SolidsInWalls made = solids_in_walls(spheres, cone, {.contact = ContactTreatment::bridge}, 0.15);
+  ASSERT_TRUE(std::holds_alternative<Mesh>(made.solids.domain));
+  EXPECT_GT(made.wall_deviation, 0);
+  EXPECT_LE(made.wall_deviation, 0.01);
+  EXPECT_GT(volume_of(made.solids.domain), volume_of(Domain(cone)));
+  // All sides are farther away by the same share: the volume by its square.
+  const double share = 1 + made.wall_deviation / 2;
+  EXPECT_LT(volume_of(made.solids.domain), volume_of(Domain(cone)) * share * share);
+  EXPECT_EQ(made.gaps_at_edges, 0u);
+}
+
 TEST(FlatWalls, EdgesThatNoTriangleHasAreRecovered) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> place(-1, 1);

@@ -124,7 +124,10 @@ struct TwoSpheres {
       spheres.push_back(centers[i], radius);
       if (solids) surface.regions.push_back({.group = "spheres", .sphere = i});
       surface.patches.push_back(
-          {.kind = Kind::sphere, .index = i, .regions = {solids ? static_cast<int>(i) + 1 : -1, 0}});
+          {.kind = Kind::sphere,
+           .index = i,
+           .regions = {solids ? static_cast<int>(i) + 1 : -1, 0},
+           .shape = {.kind = RoundSurface::Kind::sphere, .center = centers[i], .radius = radius}});
       add_ball(surface, centers[i], radius, static_cast<std::uint32_t>(surface.patches.size() - 1));
     }
   }
@@ -220,7 +223,7 @@ TEST(SecondOrder, VolumesOfCurvedTetrahedraAreThoseOfSpheres) {
   const TwoSpheres two(true);
   FillReport report;
   VolumeMesh mesh = fill(two.surface, {}, report);
-  const CurvedEdges edges = make_second_order(mesh, two.spheres, two.domain);
+  const CurvedEdges edges = make_second_order(mesh);
   EXPECT_EQ(edges.curved, 2 * 480U);
   EXPECT_EQ(edges.kept_straight, 0U);
   EXPECT_GT(least_curved_sicn(mesh), 0.1);

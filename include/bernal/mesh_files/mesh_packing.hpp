@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <filesystem>
@@ -35,6 +36,8 @@ struct MeshFileOptions {
   double sphere_edge = 0.3;    ///< longest edges on spheres
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
+  double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
+  std::string cut = {};        ///< the part that is meshed, as `box_in` takes it; all of it if empty
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
   int order = 1;               ///< 2: with middles of edges, on the true spheres
 };
@@ -45,10 +48,11 @@ struct MeshKey {
   std::string what;         ///< with its default
   std::string placeholder;  ///< of its value: "SHARE"
   std::variant<double MeshFileOptions::*, int MeshFileOptions::*, bool MeshFileOptions::*,
-               ContactTreatment MeshFileOptions::*>
+               ContactTreatment MeshFileOptions::*, std::string MeshFileOptions::*>
       to;
   double least = 0, most = 0;           ///< of a number
-  std::vector<std::string> words = {};  ///< else what it may be: of a flag the word for false first
+  std::vector<std::string> words = {};  ///< else what it may be: of a flag the word for false first; of a
+                                        ///< text none
 };
 /// All of them, in the order in which users see them.
 const std::vector<MeshKey>& mesh_keys();
@@ -67,8 +71,11 @@ struct BedMeshReport {
   std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
   std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
+  std::size_t clipped = 0;        ///< spheres that the faces of a box cut out of the packing clip
+  std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
   std::size_t gaps_at_edges = 0;
+  double wall_deviation = 0;  ///< how far facets stand off the round walls of a solid of revolution
 
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
@@ -80,6 +87,9 @@ struct BedMeshReport {
   };
   std::vector<Place> worst;                      ///< up to ten tetrahedra, the worst first
   std::optional<double> least_curved_sicn = {};  ///< of second order
+  /// Edges on round surfaces, of second order, and those of them that stay straight where elements would
+  /// fold.
+  std::size_t curved_edges = 0, straight_edges = 0;
 
   double domain_volume = 0;
   double porosity = 0;         ///< in closed form, contacts as they were treated
@@ -87,7 +97,8 @@ struct BedMeshReport {
   double contact_area = 0;     ///< cross-sections of necks, flat faces of caps
   struct Group {
     std::string name;
-    double volume = 0;  ///< of the mesh
+    double volume = 0;                    ///< of the mesh
+    std::optional<double> stated_volume;  ///< in closed form, contacts as they were treated, where known
     std::size_t tetrahedra = 0;
   };
   std::vector<Group> groups;
@@ -101,7 +112,8 @@ struct BedMeshReport {
 
   /// Whether the least SICN is as large as it is promised to be.
   static constexpr double promised_sicn = 0.1;
-  bool keeps_promise() const { return least_sicn >= promised_sicn; }
+  double worst_sicn() const { return std::min(least_sicn, least_curved_sicn.value_or(1)); }
+  bool keeps_promise() const { return worst_sicn() >= promised_sicn; }
 };
 
 struct MeshedPacking {
