@@ -72,7 +72,7 @@ def with_openfoam(result, name):
     (case / "system" / "controlDict").write_text(CONTROL)
     report = mesh(result, "openfoam", "case/bed.foam")
     os.environ.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
-    said = run("checkMesh", "-case", case, folder=result.folder)
+    said = run("checkMesh", "-case", case, "-allGeometry", "-allTopology", folder=result.folder)
     expect("Mesh OK" in said, f"{name}: checkMesh finds the mesh good")
     cells = [line.split()[-1] for line in said.splitlines() if line.strip().startswith("cells:")]
     expect(cells == [str(report["tetrahedra"])], f"{name}: it counts {cells} cells")
