@@ -86,8 +86,8 @@ void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, BedMeshReport& 
 }
 
 /// Where layers of spheres begin; nothing where only the fluid is meshed.
-Shells shells_of(const Packing& packing, const MeshFileOptions& options) {
-  Shells shells;
+InnerSpheres shells_of(const Packing& packing, const MeshFileOptions& options) {
+  InnerSpheres shells;
   if (!options.solids) return shells;
   const SphereLayers layers = layers_of(packing);
   if (layers.empty()) return shells;

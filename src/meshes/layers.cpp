@@ -163,7 +163,7 @@ class ShellsOfPieces {
   }
 
   SurfaceDraft& draft_;
-  const Shells& shells_;
+  const InnerSpheres& shells_;
 };
 
 }  // namespace

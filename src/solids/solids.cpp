@@ -262,7 +262,7 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
 }
 
 /// The spheres, and those within them as if they were others.
-Spheres<dynamic> with_shells(const Spheres<dynamic>& spheres, const Shells& shells) {
+Spheres<dynamic> with_shells(const Spheres<dynamic>& spheres, const InnerSpheres& shells) {
   Spheres<dynamic> all = spheres;
   for (std::size_t i = 0; i < spheres.size(); ++i)
     for (const double radius : shells.of(i)) all.push_back(spheres.center(i), radius);
@@ -271,7 +271,7 @@ Spheres<dynamic> with_shells(const Spheres<dynamic>& spheres, const Shells& shel
 
 }  // namespace
 
-Shells scaled(Shells shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after) {
+InnerSpheres scaled(InnerSpheres shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after) {
   if (shells.first.empty()) return shells;
   for (std::size_t i = 0; i < before.size(); ++i)
     for (std::size_t k = shells.first[i]; k < shells.first[i + 1]; ++k)

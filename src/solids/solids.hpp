@@ -21,7 +21,7 @@ struct Bridge {
 };
 
 /// Spheres within spheres, with the same centres, in which layers begin: radii that ascend, by sphere.
-struct Shells {
+struct InnerSpheres {
   std::vector<std::size_t> first = {};  ///< one entry a sphere, and one more, or none without any
   std::vector<double> radius = {};
 
@@ -31,8 +31,8 @@ struct Shells {
   }
 };
 
-/// Shells of spheres that have other radii now.
-Shells scaled(Shells, const Spheres<dynamic>& before, const Spheres<dynamic>& after);
+/// InnerSpheres of spheres that have other radii now.
+InnerSpheres scaled(InnerSpheres, const Spheres<dynamic>& before, const Spheres<dynamic>& after);
 
 /// The solids for a mesher: each once, cut at the ends of the periods.
 struct Solids {
@@ -45,7 +45,7 @@ struct Solids {
   /// infinite without periods.
   double end_distance = 0;
   double bridge_radius = 0;  ///< as asked for, over the radius of the smaller sphere
-  Shells shells = {};        ///< which shrink as their spheres do
+  InnerSpheres shells = {};  ///< which shrink as their spheres do
   /// Whether the domain is a box cut out of a packing: without periods, and its faces cut spheres.
   bool is_cut = false;
 };
@@ -54,7 +54,7 @@ struct SolidsOptions {
   ContactTreatment contact = ContactTreatment::none;
   double gap = 0.01;
   double bridge_radius = 0.2;
-  Shells shells = {};
+  InnerSpheres shells = {};
 };
 
 /// Prepares spheres for a mesher. Proven, in exact arithmetic on the given doubles: for gap and shrink what

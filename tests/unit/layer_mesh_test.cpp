@@ -24,8 +24,8 @@ double ball(double radius) { return 4 * pi / 3 * radius * radius * radius; }
 #define NEEDS_TETGEN() \
   if (program_at("tetgen").empty()) GTEST_SKIP() << "tetgen is not installed"
 
-Shells shells_in(const Spheres<dynamic>& spheres, const std::vector<double>& shares) {
-  Shells shells{.first = {0}, .radius = {}};
+InnerSpheres shells_in(const Spheres<dynamic>& spheres, const std::vector<double>& shares) {
+  InnerSpheres shells{.first = {0}, .radius = {}};
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     for (const double share : shares) shells.radius.push_back(share * spheres.r[i]);
     shells.first.push_back(shells.radius.size());
