@@ -34,9 +34,9 @@ struct SurfacePatch {
 
 /// What a volume mesher fills.
 struct MeshRegion {
-  std::string group;                        ///< "fluid", "spheres" or "bridges"
-  std::optional<std::uint32_t> sphere;      ///< for a piece of a sphere: its index in the packing
-  std::optional<std::uint32_t> layer = {};  ///< of a sphere with layers: which, from the centre out
+  std::string group;                         ///< "fluid", "spheres" or "bridges"
+  std::optional<std::uint32_t> sphere = {};  ///< for a piece of a sphere: its index in the packing
+  std::optional<std::uint32_t> layer = {};   ///< of a sphere with layers: which, from the centre out
   /// In closed form, of all pieces of a sphere or layer together at the first of them, and of a bridge at the
   /// first of its images, 0 at others; nothing where caps are cut off, whose volume is known in sum only.
   std::optional<double> volume = {};
