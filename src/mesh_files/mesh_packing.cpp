@@ -187,7 +187,8 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
-  VolumeMesh mesh = fill_with_layers(surface, {}, filled, monitor);
+  VolumeMesh mesh = fill_with_layers(surface, {.for_gradients = mesh_writer_of(options.format).for_gradients},
+                                     filled, monitor);
   report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
                           filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});

@@ -104,6 +104,7 @@ MeshWriter openfoam_of_mesh() {
                  ".foam", 1},
       .others = {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
                  "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "constant/polyMesh/cellZones"},
+      .for_gradients = true,
       .write = write_mesh_for_openfoam};
 }
 

@@ -52,7 +52,8 @@ VolumeMesh fill(const ConformingSurface& surface, const TetrahedraOptions& optio
   }
   report.seconds = watch.seconds();
   const Stopwatch improving;
-  report.improvements = improve(mesh, {.goal = options.goal}, monitor);
+  report.improvements =
+      improve(mesh, {.goal = options.goal, .for_gradients = options.for_gradients}, monitor);
   report.seconds_improving = improving.seconds();
   sides_of_triangles(mesh);  // which throws unless the surface is kept
   report.volume_error = volume_error(mesh, surface);

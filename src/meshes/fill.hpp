@@ -10,6 +10,7 @@ struct TetrahedraOptions {
   double radius_over_edge = 1.2;  ///< of the sphere through the corners over the shortest edge, at most
   double least_angle = 14;        ///< between faces of tetrahedra away from the surface, in degrees
   double goal = 0.2;              ///< of the SICN, see `improve`
+  bool for_gradients = false;     ///< see `ImproveOptions`
   /// Of a surface that is filled at once; larger ones are filled in sections, see `fill_in_sections`.
   std::size_t most_triangles = 1'000'000;
 };

@@ -26,7 +26,8 @@ TetrahedronCorners with(TetrahedronCorners corners, std::uint32_t old, std::uint
 
 class Improver {
  public:
-  Improver(VolumeMesh& mesh, const ImproveOptions& options) : near_(mesh), options_(options) {}
+  Improver(VolumeMesh& mesh, const ImproveOptions& options)
+      : near_(mesh, options.for_gradients), options_(options) {}
 
   ImproveReport run(const Monitor& monitor) {
     for (; report_.passes < options_.passes; ++report_.passes) {

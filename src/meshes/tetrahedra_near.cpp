@@ -13,13 +13,14 @@ bool has(const TetrahedronCorners& corners, std::uint32_t vertex) {
 
 }  // namespace
 
-TetrahedraNear::TetrahedraNear(VolumeMesh& mesh)
+TetrahedraNear::TetrahedraNear(VolumeMesh& mesh, bool for_gradients)
     : mesh_(mesh),
       is_fixed_(mesh.vertices.size(), 0),
       is_touched_(mesh.vertices.size(), 0),
       slot_(mesh.vertices.size(), none) {
   for (const FaceCorners& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle) is_fixed_[vertex] = 1;
+  if (!for_gradients) return;
   const auto is_outer = [&](std::size_t t) {
     const SurfacePatch& patch = mesh.patches[mesh.patch[t]];
     return patch.kind != SurfacePatch::Kind::period_end &&
@@ -77,7 +78,7 @@ double TetrahedraNear::determinant_of_inner_faces(const TetrahedronCorners& c) c
 
 double TetrahedraNear::quality(const TetrahedronCorners& c) const {
   const double shape = sicn(at(c[0]), at(c[1]), at(c[2]), at(c[3]));
-  if (shape <= most_of_ill_posed) return shape;
+  if (shape <= most_of_ill_posed || first_outside_.empty()) return shape;
   const auto fixed = std::ranges::count_if(c, [&](std::uint32_t vertex) { return is_fixed_[vertex] != 0; });
   constexpr double well_shaped = 0.5;  // whose four faces give more, and of which three at most lie inside
   if (fixed < 3 && shape > well_shaped) return shape;

@@ -16,7 +16,7 @@ class TetrahedraNear {
   static constexpr std::uint32_t none = 0xFFFFFFFF;
 
   /// Vertices of triangles are fixed.
-  explicit TetrahedraNear(VolumeMesh& mesh);
+  TetrahedraNear(VolumeMesh& mesh, bool for_gradients);
 
   /// Looks at those of SICN below the goal, and keeps the stars of all vertices of tetrahedra that share a
   /// corner with one of them. Returns them, the worst first.
@@ -30,9 +30,9 @@ class TetrahedraNear {
   bool is_free(std::uint32_t vertex) const { return !is_fixed_[vertex]; }
 
   double quality(std::uint32_t t) const { return quality(corners(t)); }
-  /// The SICN, but no more than `most_of_ill_posed` where the faces inside of the mesh do not determine a
-  /// gradient from the fluxes through them: where two faces lie on the outside, or inner faces are nearly
-  /// parallel to one direction.
+  /// The SICN; for gradients no more than `most_of_ill_posed` where the faces inside of the mesh do not
+  /// determine a gradient from the fluxes through them: where two faces lie on the outside, or inner faces
+  /// are nearly parallel to one direction.
   double quality(const TetrahedronCorners&) const;
   static constexpr double most_of_ill_posed = 0.1;
   /// Of the sum of n n^T over inner faces, n being a face's area over the mean of them, by 8, what it is for
