@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "core/parallel.hpp"
 #include "meshes/surface_draft.hpp"
 
 namespace bernal {
@@ -70,7 +71,9 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
   add_circles(draft);
   add_neck_traces(draft);
   mesh_necks(draft);
+  const Interruptible interruptible(monitor);
   mesh_pieces(draft, monitor);
+  monitor.report({"surface", -1, "walls and ends of periods"});
   mesh_flat_faces(draft);
   mesh_copied_shells(draft);
   if (box != nullptr) {

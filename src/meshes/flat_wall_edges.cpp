@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "core/parallel.hpp"
+
 namespace bernal {
 namespace {
 
@@ -119,6 +121,7 @@ class FlatEdgePoints {
   }
 
   void divide_by_size(std::uint32_t e) {
+    throw_if_interrupted();
     const Vector<3> from = end(e, 0), span = end(e, 1) - from;
     const double length = span.norm();
     const auto size = [&](double share) { return size_at(e, from + share * span); };
@@ -155,6 +158,7 @@ class FlatEdgePoints {
   bool divide_by_others() {
     bool has_changed = false;
     for (std::uint32_t e = 0; e < walls_.edges.size(); ++e) {
+      throw_if_interrupted();
       const std::vector<std::pair<double, std::uint32_t>> points(on_edge_[e].begin(), on_edge_[e].end());
       for (std::size_t k = 0; k + 1 < points.size(); ++k) {
         if (!is_too_long(e, points[k].second, points[k + 1].second)) continue;

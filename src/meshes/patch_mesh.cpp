@@ -5,6 +5,7 @@
 #include <queue>
 
 #include "bernal/core/error.hpp"
+#include "core/parallel.hpp"
 
 namespace bernal {
 namespace {
@@ -204,6 +205,7 @@ class Mesher {
   void refine() {
     for (std::uint32_t f = 0; f < delaunay_.faces().size(); ++f) consider(f);
     while (!waiting_.empty()) {
+      throw_if_interrupted();
       const Waiting next = waiting_.top();
       waiting_.pop();
       const Delaunay::Face& f = delaunay_.faces()[next.face];

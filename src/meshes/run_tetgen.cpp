@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -27,16 +28,23 @@ namespace fs = std::filesystem;
 namespace bernal {
 namespace {
 
+constexpr std::uintmax_t smallest_room = 1 << 20;  // bytes
 constexpr const char* log_name = "said.txt";
 
 /// A folder for the mesher's files, which goes with this object.
 class FolderOfMesher {
  public:
   FolderOfMesher() {
-    std::string name = (fs::temp_directory_path() / "bernal-mesh-XXXXXX").string();
+    std::error_code unknown;
+    const fs::path in = fs::temp_directory_path(unknown);
+    if (unknown)
+      throw Error(ErrorCode::cannot_write,
+                  "the folder for files in passing is not there: set TMPDIR to one that is",
+                  {plain_text(std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp")});
+    std::string name = (in / "bernal-mesh-XXXXXX").string();
     if (!mkdtemp(name.data()))
       throw Error(ErrorCode::cannot_write, "no folder can be made for the mesher: is TMPDIR full?",
-                  {fs::temp_directory_path().string()});
+                  {in.string()});
     path_ = name;
   }
   ~FolderOfMesher() {
@@ -131,7 +139,13 @@ void require_done(const ChildEnd& end, const fs::path& folder) {
     throw Error(ErrorCode::bad_mesh,
                 fmt::format("TetGen was killed at {:.1f} GB of memory; fewer and larger triangles need less",
                             end.peak_bytes / 1e9));
-  throw Error(ErrorCode::bad_mesh, fmt::format("TetGen made no mesh: {}", end_of(said)));
+  if (fs::space(folder, unknown).available < smallest_room)
+    throw Error(ErrorCode::cannot_write, "the disk is full: set TMPDIR to a folder with more room",
+                {folder.parent_path().string()});
+  throw Error(ErrorCode::bad_mesh, fmt::format("TetGen made no mesh ({}): {}",
+                                               end.signal != 0 ? fmt::format("signal {}", end.signal)
+                                                               : fmt::format("exit status {}", end.code),
+                                               said.empty() ? "it said nothing" : end_of(said)));
 }
 
 }  // namespace
