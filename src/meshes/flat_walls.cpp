@@ -165,8 +165,8 @@ std::vector<FlatFeet::Foot> FlatFeet::near(const Vector<3>& c, double r, double 
     const std::uint32_t part = walls_.part_of_triangle[near.facet.id];
     const Vector<3> point = closest_point(near.facet, at);
     if ((point - at).dot(walls_.parts[part].outward) <= 0) continue;  // the far side of something thin
-    const auto [entry, is_new] = of_part.try_emplace(part, Nearest{near.distance, {}});
-    if (is_new || near.distance < entry->second.distance) entry->second = {near.distance, point};
+    const auto [entry, is_new] = of_part.try_emplace(part, Nearest{near.distance, point});
+    if (!is_new && near.distance < entry->second.distance) entry->second = {near.distance, point};
   }
   std::vector<Foot> feet;
   for (const auto& [part, nearest] : of_part) {

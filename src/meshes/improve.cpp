@@ -227,8 +227,9 @@ class Improver {
     std::array<std::uint32_t, 3> of{};
     for (std::size_t k = 0; k < 3; ++k) of[k] = c[static_cast<std::size_t>(face[k])];
     const std::uint32_t here = c[static_cast<std::size_t>(corner)];
-    const std::uint32_t there =
-        *std::ranges::find_if(d, [&](std::uint32_t v) { return std::ranges::find(of, v) == of.end(); });
+    std::uint32_t there = d[0];
+    for (const std::uint32_t v : d)
+      if (std::ranges::find(of, v) == of.end()) there = v;
     std::array<TetrahedronCorners, 3> made{};
     double quality = 1;
     for (std::size_t k = 0; k < 3; ++k) {

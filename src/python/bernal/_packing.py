@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import os
 from collections.abc import Iterable
 from functools import cached_property
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from . import _core, _records, _surfaces, _toml
 from ._errors import InputError
 from ._jobs import NOT_REACHED, finish
+from ._pages import page_of
 from ._pictures import Picture, View
 from ._progress import Progress
 from ._records import Record, Written
@@ -385,28 +385,5 @@ class Packing:
             f"packing fraction {self.packing_fraction:.4f}, {end}>"
         )
 
-    def _colour(self, row: str) -> str:
-        """Amber, which can be read on white and on black, for a run that ended without what was asked."""
-        return ' style="color:#b87400;font-weight:600"' if row == "outcome" and self.outcome in NOT_REACHED else ""
-
     def _repr_html_(self) -> str:
-        expected = f" ({self.expected_packing_fraction:.3f} was expected)" if self.expected_packing_fraction > 0 else ""
-        size = " × ".join(f"{edge:.4g}" for edge in self.bounds[1] - self.bounds[0])
-        rows = {
-            "discs" if self.dimension == 2 else "spheres": f"{len(self):,} in a {self._core.domain()} of {size} {self.unit}",
-            "packing fraction": f"{self.packing_fraction:.4f}{expected}",
-            "outcome": f"{self.outcome}: {self.reason}" if self.reason else self.outcome,
-        }
-        if len(self):
-            low, high = self.diameters.min(), self.diameters.max()
-            range_of = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
-            rows["diameters"] = f"{range_of} {self.unit}"
-        cells = "".join(
-            f'<div style="opacity:.65">{name}</div><div{self._colour(name)}>{html.escape(text)}</div>'
-            for name, text in rows.items()
-        )
-        picture = self.picture._repr_html_() if self.dimension in (2, 3) else ""
-        return (
-            '<div style="display:grid;grid-template-columns:max-content 1fr;gap:.2em 1.2em;max-width:44em">'
-            f"{cells}</div>{picture}"
-        )
+        return page_of(self, self.outcome in NOT_REACHED)
