@@ -221,6 +221,17 @@ std::size_t third_spheres_met(const Spheres<3>& spheres, const PointGrid<3>& gri
   return met;
 }
 
+constexpr double rounding = 1e-9;  // far above that of coordinates, far below the resolution of CAD
+
+void require_inside(const NearWall& wall) {
+  if (wall.gap < -rounding)
+    throw Error(
+        ErrorCode::bad_argument,
+        fmt::format("sphere {} reaches through a wall by {:.2g} of its radius, where no bridge can stand; "
+                    "bernal verify says more, and contact gap or cap makes room",
+                    wall.sphere, -wall.gap));
+}
+
 std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& domain,
                                const std::vector<Bond>& bonds, double relative_radius,
                                ContactReport& report) {
@@ -232,7 +243,6 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
   std::vector<Bridge> bridges;
   std::vector<std::vector<Circle>> circles(spheres.size());
   report.smallest_angle = 180;
-  constexpr double rounding = 1e-9;  // far above that of coordinates, far below the resolution of CAD
   for (const Bond& bond : bonds) {
     if (bond.gap < -rounding)
       throw Error(ErrorCode::bad_argument,
@@ -297,9 +307,11 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
     ContactReport unused;
     const std::vector<Bond> bonds = bonds_of(made.spheres, domain, options.gap);
     bridges = bridges_of(made.spheres, domain, bonds, options.bridge_radius, unused);
-    if (has_walls(domain) && boundary_of<3>(domain).repeats())
-      for (const NearWall& wall : near_walls(made.spheres, domain, options.gap, nullptr))
+    if (has_walls(domain))
+      for (const NearWall& wall : near_walls(made.spheres, domain, options.gap, nullptr)) {
+        require_inside(wall);
         feet.push_back({wall.sphere, options.bridge_radius * made.spheres.r[wall.sphere]});
+      }
   }
   made.shells = scaled(options.shells, spheres, made.spheres);
   const ClearEnds ends = with_clear_ends(with_shells(made.spheres, made.shells), domain, bridges, feet);

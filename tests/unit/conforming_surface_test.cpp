@@ -194,6 +194,14 @@ TEST(ConformingSurface, IsTheSameInAllThreads) {
   EXPECT_EQ(one.vertices, other.vertices);
 }
 
+TEST(ConformingSurface, SpheresThroughWallsAreRefused) {
+  for (const double x : {3.001, 3.5, 15.0}) {
+    Spheres<dynamic> spheres(3);
+    spheres.push_back(Vector<3>(x, 2, 2), 1);
+    EXPECT_THROW(solids_in(spheres, Box{.size = Vector<3>(4, 4, 4)}, ContactTreatment::bridge), Error);
+  }
+}
+
 TEST(ConformingSurface, OtherDomainsAreRefused) {
   Spheres<dynamic> spheres(3);
   spheres.push_back(Vector<3>(0, 0, 0), 0.5);
