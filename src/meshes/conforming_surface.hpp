@@ -105,8 +105,8 @@ struct SurfaceMeshOptions {
 /// of periods with the same points. Vertices lie on the true surfaces to rounding, so triangles of spheres
 /// that do not overlap do not cross. The same for any number of threads.
 ///
-/// Walls of a mesh are divided into their planar parts, see `FlatWalls`, of which each is triangulated anew:
-/// the volume within them stays what it is.
+/// Walls of a mesh are divided into their planar parts, see `PlanarWalls`, of which each is triangulated
+/// anew: the volume within them stays what it is.
 ///
 /// Precondition: solids of three dimensions in a box, a cylinder, both periodic or not, a sphere, or a mesh
 /// without an inset in which bridges have room, see `solids_in_walls`. Throws

@@ -19,7 +19,7 @@ constexpr double acute_cosine = 0.5;  // 60 degrees
 
 class FlatEdgePoints {
  public:
-  FlatEdgePoints(SurfaceDraft& draft, const FlatWalls& walls, const std::vector<Vector<3>>& corners)
+  FlatEdgePoints(SurfaceDraft& draft, const PlanarWalls& walls, const std::vector<Vector<3>>& corners)
       : draft_(draft), walls_(walls), corners_(corners), of_part_(walls.parts.size()) {
     vertex_.assign(corners.size(), Delaunay::none);
     acute_.resize(walls.edges.size());
@@ -204,7 +204,7 @@ class FlatEdgePoints {
   }
 
   SurfaceDraft& draft_;
-  const FlatWalls& walls_;
+  const PlanarWalls& walls_;
   const std::vector<Vector<3>>& corners_;
   std::vector<std::uint32_t> vertex_;  ///< of corners
   std::vector<std::array<bool, 2>> acute_;
@@ -214,7 +214,7 @@ class FlatEdgePoints {
 
 }  // namespace
 
-std::vector<std::vector<std::uint32_t>> points_on_flat_edges(SurfaceDraft& draft, const FlatWalls& walls,
+std::vector<std::vector<std::uint32_t>> points_on_flat_edges(SurfaceDraft& draft, const PlanarWalls& walls,
                                                              const std::vector<Vector<3>>& corners) {
   return FlatEdgePoints(draft, walls, corners).made();
 }

@@ -12,7 +12,7 @@ namespace bernal {
 /// Beside corners below 60 degrees pieces end at the same distances from the corner (powers of 2), so that
 /// they do not ask each other for ever smaller ones. Pieces are not made shorter than 3 % of the size there:
 /// in needles of the given triangles angles stay what they are. Cost: O(points), times those near each.
-std::vector<std::vector<std::uint32_t>> points_on_flat_edges(SurfaceDraft&, const FlatWalls&,
+std::vector<std::vector<std::uint32_t>> points_on_flat_edges(SurfaceDraft&, const PlanarWalls&,
                                                              const std::vector<Vector<3>>& corners);
 
 }  // namespace bernal

@@ -124,8 +124,8 @@ class StraightEdges {
 
 }  // namespace
 
-FlatWalls flat_walls_of(const Mesh& mesh) {
-  FlatWalls walls;
+PlanarWalls flat_walls_of(const Mesh& mesh) {
+  PlanarWalls walls;
   walls.tolerance = tolerance_of_diagonal * bounds_of(mesh).diagonal();
   FlatGroups groups = flat_groups_of(mesh, topology_of(mesh), walls.tolerance);
   for (const std::vector<std::uint32_t>& members : groups.members) {
@@ -147,7 +147,7 @@ FlatWalls flat_walls_of(const Mesh& mesh) {
   return walls;
 }
 
-FlatFeet::FlatFeet(const Mesh& mesh, const FlatWalls& walls, std::shared_ptr<const Container> container)
+FlatFeet::FlatFeet(const Mesh& mesh, const PlanarWalls& walls, std::shared_ptr<const Container> container)
     : walls_(walls), frame_(frame_of(Domain(mesh))), container_(std::move(container)) {}
 
 std::vector<FlatFeet::Foot> FlatFeet::near(const Vector<3>& c, double r, double reach) const {
@@ -213,7 +213,7 @@ SolidsInWalls solids_in_walls(const Spheres<dynamic>& spheres, const Domain& dom
     return {solids_of(spheres, domain, options, monitor)};
   SolidsInWalls made;
   Spheres<dynamic> smaller = spheres;
-  const FlatWalls walls = flat_walls_of(*mesh);
+  const PlanarWalls walls = flat_walls_of(*mesh);
   const FlatFeet feet(*mesh, walls, local_container(domain, nullptr));
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double r = spheres.r[i], reach = (1 + options.gap) * r;

@@ -25,20 +25,20 @@ struct FlatEdge {
 /// A closed mesh as planar parts and the straight edges between them: edges within a part, and corners in the
 /// middle of straight edges, are gone. Everything is at most `tolerance` off the mesh, a share of 1e-7 of its
 /// diagonal.
-struct FlatWalls {
+struct PlanarWalls {
   std::vector<FlatPart> parts;
   std::vector<std::uint32_t> part_of_triangle;
   std::vector<FlatEdge> edges;
   double tolerance = 0;
 };
 /// Precondition: closed, oriented. Cost: O(T log T).
-FlatWalls flat_walls_of(const Mesh&);
+PlanarWalls flat_walls_of(const Mesh&);
 
 /// Where bridges may stand on such walls.
 class FlatFeet {
  public:
   /// The container is that of the mesh in its own frame, see `local_container`.
-  FlatFeet(const Mesh&, const FlatWalls&, std::shared_ptr<const Container> container);
+  FlatFeet(const Mesh&, const PlanarWalls&, std::shared_ptr<const Container> container);
 
   /// A part that is near a ball, and what is around the foot of a bridge on it.
   struct Foot {
@@ -55,7 +55,7 @@ class FlatFeet {
   static double radius_in(const Foot& foot, double asked, double edge);
 
  private:
-  const FlatWalls& walls_;
+  const PlanarWalls& walls_;
   Frame frame_;
   std::shared_ptr<const Container> container_;
 };

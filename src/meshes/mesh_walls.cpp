@@ -5,7 +5,7 @@
 namespace bernal {
 
 void mesh_flat_walls(SurfaceDraft& draft, const Mesh& mesh) {
-  const FlatWalls& walls = *draft.flat_walls;
+  const PlanarWalls& walls = *draft.flat_walls;
   const auto chains = points_on_flat_edges(draft, walls, mesh.vertices);
   std::vector<std::vector<std::uint32_t>> edges(walls.parts.size()), feet(walls.parts.size());
   for (std::uint32_t e = 0; e < walls.edges.size(); ++e)

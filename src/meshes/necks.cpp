@@ -102,7 +102,7 @@ class Necks {
     if (draft_.flat_walls) return at_flat_walls();
     for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
       const double r = spheres_.r[i];
-      for (const WallView& view : walls_around(solids_.domain, spheres_.center(i))) {
+      for (const WallSheet& view : walls_around(solids_.domain, spheres_.center(i))) {
         if (view.distance - r >= solids_.contacts.gap * r) continue;
         bonds_.push_back({.spheres = {i, i},
                           .wall = view.wall,
@@ -114,7 +114,7 @@ class Necks {
   }
 
   void at_flat_walls() {
-    const FlatWalls& walls = *draft_.flat_walls;
+    const PlanarWalls& walls = *draft_.flat_walls;
     const FlatFeet feet(std::get<Mesh>(solids_.domain), walls, draft_.sizes.container());
     for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
       const double r = spheres_.r[i], asked = solids_.bridge_radius * r;

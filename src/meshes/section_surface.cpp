@@ -151,7 +151,7 @@ std::vector<DirectedEdge> SurfaceParts::rims_of(const PartBuilder& builder) cons
   return edges;
 }
 
-SurfacePart SurfaceParts::near(double low, double high) const {
+PartOfSurface SurfaceParts::near(double low, double high) const {
   const Range near{low - longest_edge_, high + longest_edge_};
   const std::vector<std::uint8_t> chosen = chosen_pieces(near);
   std::vector<std::uint8_t> takes(surface_.patches.size(), 0);
@@ -165,7 +165,7 @@ SurfacePart SurfaceParts::near(double low, double high) const {
   for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
     if (takes[surface_.patch[t]]) all.take(range_of(t));
   PartBuilder builder(surface_.vertices);
-  SurfacePart& part = builder.part();
+  PartOfSurface& part = builder.part();
   part.surface.patches = surface_.patches;
   part.surface.regions = surface_.regions;
   for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {

@@ -14,7 +14,7 @@ constexpr std::uint32_t not_of_whole = 0xFFFFFFFF;
 using DirectedEdge = std::array<std::uint32_t, 2>;
 
 /// A part of a surface, with vertices of its own.
-struct SurfacePart {
+struct PartOfSurface {
   ConformingSurface surface;             ///< without statement, sizes and periods
   std::vector<std::uint32_t> vertex;     ///< of the whole, by those of the part, or `not_of_whole`
   std::vector<std::uint32_t> triangles;  ///< of the whole; the part may have others after these
@@ -32,13 +32,13 @@ class PartBuilder {
   std::vector<DirectedEdge> open_edges(const std::function<bool(std::uint32_t patch)>& is_meant) const;
   /// Triangles from a closed chain of edges, in numbers of the part, to its middle.
   void add_cone(const std::vector<std::uint32_t>& chain, std::uint32_t lid);
-  const SurfacePart& part() const { return part_; }
-  SurfacePart& part() { return part_; }
+  const PartOfSurface& part() const { return part_; }
+  PartOfSurface& part() { return part_; }
 
  private:
   const std::vector<Vector<3>>& vertices_;
   std::vector<std::uint32_t> number_;
-  SurfacePart part_;
+  PartOfSurface part_;
 };
 
 /// Picks parts of a surface. It holds what it needs of spheres, necks and walls; the surface outlives it.
@@ -49,7 +49,7 @@ class SurfaceParts {
   /// The spheres that reach into an interval along the axis or come near it, whole, with the necks between
   /// them, and the walls beside these. Lids close necks that lead to spheres left out, the holes of walls,
   /// and the walls beyond all of these.
-  SurfacePart near(double low, double high) const;
+  PartOfSurface near(double low, double high) const;
   /// The largest extent of a sphere along the axis.
   double largest_extent() const { return largest_extent_; }
 

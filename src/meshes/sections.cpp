@@ -33,7 +33,7 @@ struct FreeFace {
 
 /// What is kept of a section, or all of it.
 struct Section {
-  SurfacePart part;
+  PartOfSurface part;
   VolumeMesh mesh;  ///< its regions are those of the surface
   std::vector<FreeFace> faces;
   std::vector<std::array<std::uint32_t, 2>> filled;  ///< triangles of the part, and their sides

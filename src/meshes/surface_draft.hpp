@@ -97,7 +97,7 @@ struct SurfaceDraft {
   const SurfaceMeshOptions& options;
   Boundary<3> boundary;  ///< the ends of periods, or of a box that is cut out
   MeshSizes sizes;
-  std::optional<FlatWalls> flat_walls = {};  ///< of a mesh
+  std::optional<PlanarWalls> flat_walls = {};  ///< of a mesh
   std::vector<DraftPiece> pieces = {};
   std::vector<DraftNeck> necks = {};
   ConformingSurface made = {};

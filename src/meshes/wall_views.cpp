@@ -7,8 +7,8 @@
 
 namespace bernal {
 
-std::vector<WallView> walls_around(const Domain& domain, const Vector<3>& p) {
-  std::vector<WallView> views;
+std::vector<WallSheet> walls_around(const Domain& domain, const Vector<3>& p) {
+  std::vector<WallSheet> views;
   if (const auto* box = std::get_if<Box>(&domain)) {
     for (int k = 0; k < 3; ++k) {
       if (box->repeats(k)) continue;

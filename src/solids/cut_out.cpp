@@ -32,19 +32,19 @@ double depth_in(const Domain& domain, const Vector<3>& p) {
     least = sphere->radius - (p - sphere->center).norm();
   } else {
     refuse_cut(
-        fmt::format("--cut takes a part of boxes, cylinders and spheres, not of a {}", name_of(domain)));
+        fmt::format("‹cut› takes a part of boxes, cylinders and spheres, not of a {}", name_of(domain)));
   }
   return least;
 }
 
 void require_within(const Domain& domain, const Bounds<3>& box) {
-  if (!((box.upper - box.lower).minCoeff() > 0)) refuse_cut("the box of --cut holds nothing");
+  if (!((box.upper - box.lower).minCoeff() > 0)) refuse_cut("the box of ‹cut› holds nothing");
   const double rounding = 1e-9 * (box.upper - box.lower).norm();
   for (int corner = 0; corner < 8; ++corner) {
     Vector<3> p;
     for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.upper[k] : box.lower[k];
     if (depth_in(domain, p) < -rounding)
-      refuse_cut(fmt::format("the box of --cut reaches out of the container at ({:.6g}, {:.6g}, {:.6g})",
+      refuse_cut(fmt::format("the box of ‹cut› reaches out of the container at ({:.6g}, {:.6g}, {:.6g})",
                              p[0], p[1], p[2]));
   }
 }
@@ -119,7 +119,7 @@ CutOut cut_out(const Solids& whole, const Bounds<3>& given, double gap) {
   const Bounds<3> bounds{.lower = box.corner, .upper = box.corner + box.size};
   if (whole.contacts.treatment == ContactTreatment::bridge ||
       whole.contacts.treatment == ContactTreatment::cap)
-    refuse_cut("--cut takes contact gap or shrink: bridges and caps are not cut");
+    refuse_cut("‹cut› takes contact gap or shrink: bridges and caps are not cut");
   CutOut made{.solids = {.spheres = Spheres<dynamic>(3),
                          .domain = box,
                          .pieces = {},

@@ -33,10 +33,10 @@ Mesh cut_cube(int times) {
   return mesh;
 }
 
-TEST(FlatWalls, PartsAndEdgesAreThoseOfTheShape) {
+TEST(PlanarWalls, PartsAndEdgesAreThoseOfTheShape) {
   for (const int times : {0, 1, 3}) {
     const Mesh cube = cut_cube(times);
-    const FlatWalls walls = flat_walls_of(cube);
+    const PlanarWalls walls = flat_walls_of(cube);
     EXPECT_EQ(walls.parts.size(), 6u);
     ASSERT_EQ(walls.edges.size(), 12u);
     for (const FlatEdge& edge : walls.edges) {
@@ -49,21 +49,21 @@ TEST(FlatWalls, PartsAndEdgesAreThoseOfTheShape) {
     }
   }
   // Four sides of the spout, of the pyramid and of the bin, floor and lid; edges of a box and two rings more.
-  const FlatWalls walls = flat_walls_of(testing::hopper());
+  const PlanarWalls walls = flat_walls_of(testing::hopper());
   EXPECT_EQ(walls.parts.size(), 14u);
   EXPECT_EQ(walls.edges.size(), 28u);
 }
 
-TEST(FlatWalls, ASideOfManyFacesHasAPartForEach) {
+TEST(PlanarWalls, ASideOfManyFacesHasAPartForEach) {
   const Revolved cone{.profile = {{0, 0}, {1, 0}, {2, 3}, {0, 3}}};
-  const FlatWalls walls = flat_walls_of(surface_of(cone, 32));
+  const PlanarWalls walls = flat_walls_of(surface_of(cone, 32));
   EXPECT_EQ(walls.parts.size(), 34u);
   EXPECT_EQ(walls.edges.size(), 96u);
 }
 
-TEST(FlatWalls, BridgesStandWithinParts) {
+TEST(PlanarWalls, BridgesStandWithinParts) {
   const Mesh cube = cut_cube(2);
-  const FlatWalls walls = flat_walls_of(cube);
+  const PlanarWalls walls = flat_walls_of(cube);
   const FlatFeet feet(cube, walls, local_container(Domain(cube), nullptr));
   // On the floor, half a radius and more from the wall: the triangles of the floor make no difference.
   for (const double x : {1.0, 1.37, 2.0}) {
@@ -79,7 +79,7 @@ TEST(FlatWalls, BridgesStandWithinParts) {
   EXPECT_EQ(FlatFeet::radius_in({0, 1, 0.17}, 0.2, 0.15), 0);
 }
 
-TEST(FlatWalls, SpheresWithoutRoomForABridgeGetAGap) {
+TEST(PlanarWalls, SpheresWithoutRoomForABridgeGetAGap) {
   const Mesh hopper = testing::hopper();
   // Where the spout ends, an edge stands out into the hopper.
   const Vector<3> edge(0.125, 0, 0.15), slope = Vector<3>(0.375, 0, 0.45).normalized();
@@ -96,7 +96,7 @@ TEST(FlatWalls, SpheresWithoutRoomForABridgeGetAGap) {
   EXPECT_EQ(solids_in_walls(spheres, hopper, {.contact = ContactTreatment::none}, 0.15).gaps_at_edges, 0u);
 }
 
-TEST(FlatWalls, SolidsOfRevolutionAreWithinFacets) {
+TEST(PlanarWalls, SolidsOfRevolutionAreWithinFacets) {
   const Revolved cone{.profile = {{0, 0}, {1, 0}, {2, 3}, {0, 3}}};
   Spheres<dynamic> spheres(3);
   spheres.push_back(Vector<3>(0, 0, 1), 0.5);
@@ -111,7 +111,7 @@ TEST(FlatWalls, SolidsOfRevolutionAreWithinFacets) {
   EXPECT_EQ(made.gaps_at_edges, 0u);
 }
 
-TEST(FlatWalls, EdgesThatNoTriangleHasAreRecovered) {
+TEST(PlanarWalls, EdgesThatNoTriangleHasAreRecovered) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> place(-1, 1);
   for (int round = 0; round < 20; ++round) {
