@@ -37,7 +37,7 @@ struct MeshFileOptions {
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
   double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
-  std::string cut = {};        ///< the part that is meshed, as `box_in` takes it; all of it if empty
+  std::string cut = {};        ///< the box that is meshed: "x = 1..4, y = 1..4, z = 0..5"; all if empty
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
   int order = 1;               ///< 2: with middles of edges, on the true spheres
 };
