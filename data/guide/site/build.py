@@ -60,7 +60,8 @@ SECTIONS = [
          ("zhao2007", "Zhao et al. 2007"), ("han2005", "Han et al. 2005"), ("farr2013", "Farr 2013"))] +
      [("results/timings", "data/results/timings.md", "All timings"),
       ("results/relaxation", "data/results/relaxation.md", "Relaxation against the paper"),
-      ("results/estimates", "data/results/estimates.md", "Estimates of explain")]),
+      ("results/estimates", "data/results/estimates.md", "Estimates of explain"),
+      ("results/meshes", "data/results/meshes.md", "Meshes of beds")]),
     ("The project", [("project/readme", "README.md", "README"), ("project/map", "src/README.md", "The map of the code"),
                      ("project/contributing", "CONTRIBUTING.md", "Working on bernal"),
                      ("project/changelog", "CHANGELOG.md", "Changelog"),
