@@ -229,7 +229,7 @@ def main():
               f"Eisfeld & Schnitzlein {of['eisfeld_schnitzlein']:.5g} ({drop / of['eisfeld_schnitzlein'] - 1:+.1%})"
               + ("" if change < asked.tolerance else f"; not converged, it still changes by {change:.2%}"), flush=True)
     if asked.json:
-        print(json.dumps(said))
+        print(json.dumps(said, default=lambda number: number.item()))
 
 
 if __name__ == "__main__":
