@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/disjoint_sets.hpp"
+#include "geometry/edges.hpp"
 
 namespace bernal {
 namespace {
@@ -14,24 +15,12 @@ using Kind = SurfacePatch::Kind;
 /// Edges that one triangle alone has, of the patches that are meant, as that one runs.
 std::vector<DirectedEdge> edges_of_one_triangle(const ConformingSurface& surface,
                                                 const std::function<bool(std::uint32_t patch)>& is_meant) {
-  struct Side {
-    DirectedEdge low_high;
-    bool is_upwards;
-  };
-  std::vector<Side> sides;
+  std::vector<FaceCorners> meant;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3 && is_meant(surface.patch[t]); ++k) {
-      const std::uint32_t from = surface.triangles[t][k], to = surface.triangles[t][(k + 1) % 3];
-      sides.push_back({{std::min(from, to), std::max(from, to)}, from < to});
-    }
-  std::ranges::sort(sides, {}, &Side::low_high);
+    if (is_meant(surface.patch[t])) meant.push_back(surface.triangles[t]);
   std::vector<DirectedEdge> found;
-  for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
-    while (next < sides.size() && sides[next].low_high == sides[i].low_high) ++next;
-    const auto [low, high] = sides[i].low_high;
-    if (next == i + 1)
-      found.push_back(sides[i].is_upwards ? DirectedEdge{low, high} : DirectedEdge{high, low});
-  }
+  for (const EdgeUse& use : open_edges(meant))
+    found.push_back(use.upwards ? DirectedEdge{use.low, use.high} : DirectedEdge{use.high, use.low});
   std::ranges::sort(found);
   return found;
 }

@@ -12,6 +12,7 @@
 #include "files/input_file.hpp"
 #include "files/next_line.hpp"
 #include "files/output_file.hpp"
+#include "geometry/edges.hpp"
 #include "meshes/mesh_quality.hpp"
 
 namespace bernal {
@@ -126,25 +127,6 @@ void read_tetrahedra(const std::filesystem::path& file, VolumeMesh& mesh) {
     for (TetrahedronCorners& c : mesh.tetrahedra) std::swap(c[2], c[3]);
 }
 
-/// Which vertices are at an edge that one triangle has alone.
-std::vector<std::uint8_t> vertices_at_open_edges(const ConformingSurface& surface) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  edges.reserve(3 * surface.triangles.size());
-  for (const FaceCorners& c : surface.triangles)
-    for (const std::size_t k : {0, 1, 2}) {
-      const std::uint32_t from = c[k], to = c[(k + 1) % 3];
-      edges.push_back({std::min(from, to), std::max(from, to)});
-    }
-  std::ranges::sort(edges);
-  std::vector<std::uint8_t> is_open(surface.vertices.size(), 0);
-  for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
-    while (next < edges.size() && edges[next] == edges[i]) ++next;
-    if (next == i + 1)
-      for (const std::uint32_t v : edges[i]) is_open[v] = 1;
-  }
-  return is_open;
-}
-
 /// Whether a triangle is of a wall that stands around something in the domain, as obstacles do: what hangs
 /// together of it encloses a negative volume, the feet of bridges left out.
 std::vector<std::uint8_t> walls_around_something(const ConformingSurface& surface) {
@@ -225,7 +207,8 @@ std::vector<Vector<3>> points_of_holes(const ConformingSurface& surface) {
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     if (is_hole(t))
       for (const std::size_t k : {1, 2}) parts.unite(surface.triangles[t][0], surface.triangles[t][k]);
-  const std::vector<std::uint8_t> at_open_edge = vertices_at_open_edges(surface);
+  std::vector<std::uint8_t> has_open_edge(surface.triangles.size(), 0);
+  for (const EdgeUse& use : open_edges(surface.triangles)) has_open_edge[use.triangle] = 1;
   struct Largest {
     bool is_open = false;
     double area = 0;
@@ -239,8 +222,7 @@ std::vector<Vector<3>> points_of_holes(const ConformingSurface& surface) {
     const Vector<3> normal = (b - a).cross(d - a);
     const double area = normal.norm();
     Largest& largest = of_part[parts.find(c[0])];
-    for (const std::size_t k : {0, 1, 2})
-      largest.is_open |= at_open_edge[c[k]] && at_open_edge[c[(k + 1) % 3]];
+    largest.is_open |= has_open_edge[t] != 0;
     if (area <= largest.area) continue;
     const bool is_behind = surface.patches[surface.patch[t]].regions[0] == SurfacePatch::nothing;
     const double far = into * std::sqrt(area);
