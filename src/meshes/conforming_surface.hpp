@@ -63,10 +63,10 @@ struct SurfaceStatement {
   double least_edge = 0, least_angle = 0;  ///< of all triangles; the angle in degrees
   double least_angle_off_necks = 0;        ///< of all triangles that do not lie on necks, in degrees
   Vector<3> place_of_least_angle = Vector<3>::Zero();
-  std::size_t shrunk_necks =
-      0;  ///< whose radius is smaller than asked for, so that others and ends of periods stay clear
+  /// Whose radius is smaller than asked for, so that others and ends of periods stay clear.
+  std::size_t shrunk_necks = 0;
   double largest_shrink = 0;      ///< over the radius asked for
-  std::size_t widened_necks = 0;  ///< by up to a fifth, so that ends of periods cut them clearly
+  std::size_t widened_necks = 0;  ///< by up to three tenths, so that ends of periods cut them clearly
   std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
   double fluid_volume = 0;  ///< in closed form; where caps of a sphere meet, what they share is counted twice
   double meshed_fluid_volume = 0;  ///< between the triangles
