@@ -47,8 +47,14 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
              text_of_place(report.place_of_least_angle));
 }
 
-void print_quality(const BedMeshReport& report) {
+void print_quality(const BedMeshReport& report, std::string_view unit) {
   fmt::print("mesh         {} tetrahedra, {} nodes\n", grouped(report.tetrahedra), grouped(report.nodes));
+  if (report.prisms > 0)
+    fmt::print(
+        "prisms       {}, on {:.1f} % of the spheres, {:.4g} {} high in the mean, from {:.4g}; "
+        "scaled Jacobian from {:.4f}\n",
+        grouped(report.prisms), 100 * report.prism_share, report.mean_prism_height, unit,
+        report.least_prism_height, report.least_scaled_jacobian);
   fmt::print("quality      SICN from {:.4f}, mean {:.3f}; dihedral angles {:.2f} to {:.2f} degrees\n",
              report.least_sicn, report.mean_sicn, report.least_angle, report.largest_angle);
   if (report.least_curved_sicn)
@@ -64,7 +70,7 @@ void print_quality(const BedMeshReport& report) {
 
 void print_report(const BedMeshReport& report, std::string_view unit) {
   print_surface(report, unit);
-  print_quality(report);
+  print_quality(report, unit);
   fmt::print("porosity     {:.6f} in closed form, {:.6f} of the mesh", report.porosity,
              report.meshed_porosity);
   if (report.contact_area > 0) fmt::print("; contact area {:.6g} {}^2", report.contact_area, unit);

@@ -78,14 +78,19 @@ void add_nodes(const VolumeMesh& mesh, TextFile& out) {
 }
 
 void add_elements(const MeshToWrite& file, TextFile& out) {
-  constexpr int triangle = 2, tetrahedron = 4, triangle6 = 9, tetrahedron10 = 11;
+  constexpr int triangle = 2, tetrahedron = 4, prism = 6, pyramid = 7, triangle6 = 9, tetrahedron10 = 11;
   const VolumeMesh& mesh = file.mesh;
   const auto triangles = by_group(mesh.triangles.size(), file.groups.surfaces.size(),
                                   [&](std::size_t t) { return file.groups.surface_of(mesh, t); });
   const auto tetrahedra = by_group(mesh.tetrahedra.size(), file.groups.volumes.size(),
                                    [&](std::size_t t) { return file.groups.volume_of(mesh, t); });
-  const std::size_t count = mesh.triangles.size() + mesh.tetrahedra.size();
-  out.add("$Elements\n", triangles.size() + tetrahedra.size(), ' ', count, " 1 ", count, "\n");
+  // Prisms by how many corners they have: four, five, six.
+  const auto prisms = by_group(mesh.stacks.prisms.size(), 7,
+                               [&](std::size_t p) { return distinct_corners(mesh.stacks.prisms[p]).size(); });
+  const std::size_t count = mesh.triangles.size() + mesh.tetrahedra.size() + mesh.stacks.prisms.size();
+  const auto kinds = static_cast<std::size_t>(
+      std::ranges::count_if(prisms, [](const auto& of_kind) { return !of_kind.empty(); }));
+  out.add("$Elements\n", triangles.size() + tetrahedra.size() + kinds, ' ', count, " 1 ", count, "\n");
   std::size_t number = 0;
   for (std::size_t s = 0; s < triangles.size(); ++s) {
     out.add("2 ", s + 1, ' ', mesh.is_curved() ? triangle6 : triangle, ' ', triangles[s].size(), "\n");
@@ -105,6 +110,19 @@ void add_elements(const MeshToWrite& file, TextFile& out) {
       for (const std::uint32_t vertex : mesh.tetrahedra[t]) out.add(' ', vertex + 1);
       if (mesh.is_curved())
         for (const std::size_t e : middles_in_gmsh) out.add(' ', mesh.middles_of_tetrahedron[t][e] + 1);
+      out.add("\n");
+    }
+  }
+  for (std::size_t corners = 0; corners < prisms.size(); ++corners) {
+    if (prisms[corners].empty()) continue;
+    out.add("3 ", file.groups.volume_of_region[0] + 1, ' ',
+            corners == 6   ? prism
+            : corners == 5 ? pyramid
+                           : tetrahedron,
+            ' ', prisms[corners].size(), "\n");
+    for (const std::uint32_t p : prisms[corners]) {
+      out.add(++number);
+      for (const std::uint32_t vertex : distinct_corners(mesh.stacks.prisms[p])) out.add(' ', vertex + 1);
       out.add("\n");
     }
   }
@@ -150,7 +168,7 @@ std::string write_mesh_for_gmsh(const MeshToWrite& file, StagedFolder& staged) {
 
 MeshWriter gmsh_of_mesh() {
   return {.format = {"gmsh", "Gmsh, meshio, FEniCS: physical groups, and pairs of nodes at ends of periods",
-                     ".msh"},
+                     ".msh", 2, true},
           .write = write_mesh_for_gmsh};
 }
 

@@ -11,6 +11,7 @@
 #include "bernal/scene/sphere_layers.hpp"
 #include "bernal/version.hpp"
 #include "mesh_files/mesh_file.hpp"
+#include "meshes/boundary_layer.hpp"
 #include "meshes/conforming_surface.hpp"
 #include "meshes/fill_layers.hpp"
 #include "meshes/flat_walls.hpp"
@@ -162,6 +163,29 @@ void name_spheres(ConformingSurface& surface, const std::vector<std::uint32_t>& 
 }
 
 /// The mesh, its names, and what it is like.
+/// By tetrahedra, and prisms where these are asked for.
+VolumeMesh filled_mesh(const ConformingSurface& surface, const Solids& solids, const MeshFileOptions& options,
+                       FillReport& filled, const Monitor& monitor, BedMeshReport& report) {
+  const TetrahedraOptions tetrahedra{.for_gradients = mesh_writer_of(options.format).for_gradients};
+  if (options.prisms == 0) return fill_with_layers(surface, tetrahedra, filled, monitor);
+  PrismReport prisms;
+  VolumeMesh mesh =
+      fill_with_prisms(surface,
+                       {.layers = options.prisms,
+                        .height = options.prism_height,
+                        .growth = options.prism_growth,
+                        .per_gap = options.gap_edge,
+                        .on_flat_walls = !solids.is_cut && !std::holds_alternative<Cylinder>(solids.domain)},
+                       tetrahedra, filled, prisms, monitor);
+  report.prisms = prisms.prisms;
+  report.prism_ends = prisms.ends;
+  report.prism_share = prisms.covered;
+  report.mean_prism_height = prisms.mean_height;
+  report.least_prism_height = prisms.least_height;
+  report.least_scaled_jacobian = prisms.least_scaled_jacobian;
+  return mesh;
+}
+
 struct NamedMesh {
   VolumeMesh mesh;
   MeshGroups groups;
@@ -187,8 +211,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
   report.parts.push_back({"surface", watch.seconds()});
   FillReport filled;
-  VolumeMesh mesh = fill_with_layers(surface, {.for_gradients = mesh_writer_of(options.format).for_gradients},
-                                     filled, monitor);
+  VolumeMesh mesh = filled_mesh(surface, solids, options, filled, monitor, report);
   report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
                           filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
@@ -225,6 +248,10 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   for (const MeshKey& key : mesh_keys()) require_in_range(key, options);
   if (options.order > format.largest_order)
     refuse(fmt::format("the format {} has no elements of second order", format.name));
+  if (options.prisms == 0) return;
+  if (!format.has_prisms) refuse(fmt::format("prisms are not written in the format {}", format.name));
+  if (options.solids || options.order > 1)
+    refuse("‹prisms› are made where the fluid alone is meshed, by elements of first order");
 }
 
 BedMeshReport measure_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor) {

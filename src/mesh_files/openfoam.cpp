@@ -47,18 +47,36 @@ void write_boundary(const MeshToWrite& file, const PolyMesh& poly, StagedFolder&
              });
 }
 
-void write_zones(const MeshToWrite& file, StagedFolder& staged) {
+void write_faces(const MeshToWrite& file, const PolyMesh& poly, StagedFolder& staged) {
+  TextFile out(staged.add("constant/polyMesh/faces"));
+  add_header(out, file, "faceList", "faces");
+  out.add(poly.faces.size(), "\n(\n");
+  for (std::size_t f = 0; f < poly.faces.size(); ++f) {
+    const auto corners = poly.faces[f];
+    out.add(corners.size());
+    for (std::size_t k = 0; k < corners.size(); ++k) out.add(k == 0 ? '(' : ' ', corners[k]);
+    out.add(")\n");
+  }
+  out.add(")\n");
+  out.close();
+}
+
+/// Cells of groups; those of prisms come after all tetrahedra.
+void write_zones(const MeshToWrite& file, const PolyMesh& poly, StagedFolder& staged) {
   const VolumeMesh& mesh = file.mesh;
   const auto cells = by_group(mesh.tetrahedra.size(), file.groups.volumes.size(),
                               [&](std::size_t t) { return file.groups.volume_of(mesh, t); });
   std::vector<std::size_t> zones(cells.size());
   for (std::size_t v = 0; v < zones.size(); ++v) zones[v] = v;
+  const std::size_t zone_of_prisms = file.groups.volume_of_region[0],
+                    prisms = poly.cells - mesh.tetrahedra.size();
   write_list(file, staged, "regIOobject", "cellZones", zones, {}, [&](TextFile& out, std::size_t v) {
     out.add("    ", file.groups.volumes[v],
             "\n    {\n        type            cellZone;\n        cellLabels  "
             "    List<label>\n",
-            cells[v].size(), "\n(\n");
+            cells[v].size() + (v == zone_of_prisms ? prisms : 0), "\n(\n");
     for (const std::uint32_t cell : cells[v]) out.add(cell, "\n");
+    for (std::size_t p = 0; p < prisms && v == zone_of_prisms; ++p) out.add(mesh.tetrahedra.size() + p, "\n");
     out.add(");\n    }\n");
   });
 }
@@ -76,17 +94,15 @@ std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& stage
   const PolyMesh poly = poly_mesh_of(mesh, file.groups);
   write_list(file, staged, "vectorField", "points", mesh.vertices, {},
              [](TextFile& out, const Vector<3>& p) { out.add('(', p[0], ' ', p[1], ' ', p[2], ")\n"); });
-  write_list(file, staged, "faceList", "faces", poly.faces, {}, [](TextFile& out, const FaceCorners& face) {
-    out.add("3(", face[0], ' ', face[1], ' ', face[2], ")\n");
-  });
+  write_faces(file, poly, staged);
   const std::string note =
-      fmt::format("nPoints: {} nCells: {} nFaces: {} nInternalFaces: {}", mesh.vertices.size(),
-                  mesh.tetrahedra.size(), poly.faces.size(), poly.neighbour.size());
+      fmt::format("nPoints: {} nCells: {} nFaces: {} nInternalFaces: {}", mesh.vertices.size(), poly.cells,
+                  poly.faces.size(), poly.neighbour.size());
   const auto add_label = [](TextFile& out, std::uint32_t label) { out.add(label, "\n"); };
   write_list(file, staged, "labelList", "owner", poly.owner, note, add_label);
   write_list(file, staged, "labelList", "neighbour", poly.neighbour, note, add_label);
   write_boundary(file, poly, staged);
-  write_zones(file, staged);
+  write_zones(file, poly, staged);
   write_system(file, staged);
   staged.write(file.name.string(), "");
   return fmt::format(
@@ -101,7 +117,7 @@ MeshWriter openfoam_of_mesh() {
       .format = {"openfoam",
                  "OpenFOAM: constant/polyMesh beside the file, a patch a surface, cyclic ones at ends of "
                  "periods, a cell zone a region",
-                 ".foam", 1},
+                 ".foam", 1, true},
       .others = {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
                  "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "constant/polyMesh/cellZones"},
       .for_gradients = true,

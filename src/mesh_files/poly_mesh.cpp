@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -13,18 +14,94 @@ namespace {
 
 constexpr std::uint32_t none = TriangleSide::none;
 
-void add_inner_faces(const VolumeMesh& mesh, PolyMesh& poly) {
-  const auto behind = neighbours_of(mesh);
-  for (std::uint32_t t = 0; t < behind.size(); ++t) {
+void add_face(PolyMesh& poly, std::span<const std::uint32_t> corners, std::uint32_t owner) {
+  poly.faces.add(corners);
+  poly.owner.push_back(owner);
+}
+
+/// The faces that the cells in stacks of prisms share with each other.
+class FacesOfStacks {
+ public:
+  explicit FacesOfStacks(const VolumeMesh& mesh)
+      : mesh_(mesh),
+        layers_(static_cast<std::uint32_t>(mesh.stacks.layers)),
+        beside_(mesh.stacks.triangle.size()) {
+    struct Edge {
+      std::array<std::uint32_t, 2> ends;
+      std::uint32_t stack;
+      std::uint8_t side;
+    };
+    std::vector<Edge> edges;
+    for (std::uint32_t s = 0; s < beside_.size(); ++s) {
+      beside_[s].fill(none);
+      const PrismCorners& c = mesh.stacks.prisms[std::size_t{s} * layers_];
+      for (std::uint8_t side = 0; side < 3; ++side) {
+        const std::uint32_t a = c[side], b = c[(side + 1U) % 3];
+        edges.push_back({{std::min(a, b), std::max(a, b)}, s, side});
+      }
+    }
+    std::ranges::sort(edges, {}, [](const Edge& e) { return std::tuple(e.ends, e.stack); });
+    for (std::size_t i = 1; i < edges.size(); ++i) {
+      const Edge &one = edges[i - 1], &other = edges[i];
+      if (one.ends != other.ends) continue;
+      beside_[one.stack][one.side] = other.stack;
+      beside_[other.stack][other.side] = one.stack;
+    }
+  }
+
+  /// Those that a prism owns.
+  void add(std::uint32_t prism, PolyMesh& poly) const {
+    const auto first = static_cast<std::uint32_t>(mesh_.tetrahedra.size());
+    const std::uint32_t stack = prism / layers_, layer = prism % layers_;
+    const PrismCorners& c = mesh_.stacks.prisms[prism];
+    struct Face {
+      std::uint32_t neighbour;
+      std::vector<std::uint32_t> corners;
+    };
+    std::vector<Face> faces;
+    if (layer + 1 < layers_) faces.push_back({prism + 1, {c[3], c[4], c[5]}});
+    for (std::size_t side = 0; side < 3; ++side) {
+      const std::uint32_t other = beside_[stack][side];
+      if (other == none || other < stack) continue;
+      std::vector<std::uint32_t> corners = {c[side], c[(side + 1) % 3]};
+      for (const std::size_t k : {(side + 1) % 3, side})
+        if (c[k] != c[k + 3]) corners.push_back(c[k + 3]);
+      if (corners.size() > 2) faces.push_back({other * layers_ + layer, std::move(corners)});
+    }
+    std::ranges::sort(faces, {}, &Face::neighbour);
+    for (const Face& face : faces) {
+      add_face(poly, face.corners, first + prism);
+      poly.neighbour.push_back(first + face.neighbour);
+    }
+  }
+
+ private:
+  const VolumeMesh& mesh_;
+  std::uint32_t layers_;
+  std::vector<std::array<std::uint32_t, 3>> beside_;  ///< the stack on the other side of each edge
+};
+
+using SidesOfTriangles = std::vector<std::array<TriangleSide, 2>>;
+
+void add_inner_faces(const VolumeMesh& mesh, const SidesOfTriangles& sides, PolyMesh& poly) {
+  auto behind = neighbours_of(mesh);
+  const std::size_t tetrahedra = mesh.tetrahedra.size(), layers = mesh.stacks.layers;
+  for (std::size_t s = 0; s < mesh.stacks.triangle.size(); ++s)
+    for (const TriangleSide& on_top : sides[mesh.stacks.triangle[s]])
+      if (on_top.is_there())
+        behind[on_top.tetrahedron][on_top.face] =
+            static_cast<std::uint32_t>(tetrahedra + (s + 1) * layers - 1);
+  for (std::uint32_t t = 0; t < tetrahedra; ++t) {
     std::array<std::size_t, 4> order = {0, 1, 2, 3};
     std::ranges::sort(order, {}, [&](std::size_t k) { return behind[t][k]; });
     for (const std::size_t k : order) {
       if (behind[t][k] == none || behind[t][k] < t) continue;
-      poly.faces.push_back(face_of(mesh, t, k));
-      poly.owner.push_back(t);
+      add_face(poly, face_of(mesh, t, k), t);
       poly.neighbour.push_back(behind[t][k]);
     }
   }
+  const FacesOfStacks of_stacks(mesh);
+  for (std::uint32_t p = 0; p < mesh.stacks.prisms.size(); ++p) of_stacks.add(p, poly);
 }
 
 /// The end of a period that a surface is, 0 to 5; none if it is no such.
@@ -64,8 +141,9 @@ std::vector<std::uint32_t> images_of(const VolumeMesh& mesh, std::size_t axis,
 
 class BoundaryFaces {
  public:
-  BoundaryFaces(const VolumeMesh& mesh, const MeshGroups& groups, PolyMesh& poly)
-      : mesh_(mesh), groups_(groups), poly_(poly), sides_(sides_of_triangles(mesh)) {
+  BoundaryFaces(const VolumeMesh& mesh, const MeshGroups& groups, const SidesOfTriangles& sides,
+                PolyMesh& poly)
+      : mesh_(mesh), groups_(groups), poly_(poly), sides_(sides) {
     of_surface_ = by_group(mesh.triangles.size(), groups.surfaces.size(),
                            [&](std::size_t t) { return groups.surface_of(mesh, t); });
     // Those between two regions are inner faces.
@@ -100,15 +178,26 @@ class BoundaryFaces {
       }
     }
     for (std::size_t k = 0; k < triangles.size(); ++k) {
+      if (const auto stack = std::ranges::lower_bound(mesh_.stacks.triangle, triangles[k]);
+          stack != mesh_.stacks.triangle.end() && *stack == triangles[k]) {
+        add_below_stack(static_cast<std::size_t>(stack - mesh_.stacks.triangle.begin()));
+        continue;
+      }
       const TriangleSide& side =
           sides_[triangles[k]][0].is_there() ? sides_[triangles[k]][0] : sides_[triangles[k]][1];
       FaceCorners corners = face_of(mesh_, side.tetrahedron, side.face);
       if (end != none) begin_at_image(end, k, corners);
-      poly_.faces.push_back(corners);
-      poly_.owner.push_back(side.tetrahedron);
+      add_face(poly_, corners, side.tetrahedron);
     }
     patch.count = triangles.size();
     poly_.patches.push_back(patch);
+  }
+
+  void add_below_stack(std::size_t stack) {
+    const std::size_t prism = stack * mesh_.stacks.layers;
+    const PrismCorners& c = mesh_.stacks.prisms[prism];
+    add_face(poly_, FaceCorners{c[0], c[2], c[1]},
+             static_cast<std::uint32_t>(mesh_.tetrahedra.size() + prism));
   }
 
   /// The first corner of the k-th face of a lower end is the least one, and at the upper end its image.
@@ -128,7 +217,7 @@ class BoundaryFaces {
   const VolumeMesh& mesh_;
   const MeshGroups& groups_;
   PolyMesh& poly_;
-  std::vector<std::array<TriangleSide, 2>> sides_;
+  const SidesOfTriangles& sides_;
   std::vector<std::vector<std::uint32_t>> of_surface_;
 };
 
@@ -136,8 +225,10 @@ class BoundaryFaces {
 
 PolyMesh poly_mesh_of(const VolumeMesh& mesh, const MeshGroups& groups) {
   PolyMesh poly;
-  add_inner_faces(mesh, poly);
-  BoundaryFaces(mesh, groups, poly).add();
+  const SidesOfTriangles sides = sides_of_triangles(mesh);
+  add_inner_faces(mesh, sides, poly);
+  BoundaryFaces(mesh, groups, sides, poly).add();
+  poly.cells = mesh.tetrahedra.size() + mesh.stacks.prisms.size();
   return poly;
 }
 

@@ -1,12 +1,31 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "mesh_files/mesh_file.hpp"
 
 namespace bernal {
+
+/// Polygons, by their corners.
+class FacesOfMesh {
+ public:
+  void add(std::span<const std::uint32_t> face) {
+    corners_.insert(corners_.end(), face.begin(), face.end());
+    ends_.push_back(corners_.size());
+  }
+  std::size_t size() const { return ends_.size(); }
+  std::span<const std::uint32_t> operator[](std::size_t face) const {
+    const std::size_t first = face == 0 ? 0 : ends_[face - 1];
+    return {corners_.data() + first, ends_[face] - first};
+  }
+
+ private:
+  std::vector<std::uint32_t> corners_;
+  std::vector<std::size_t> ends_;
+};
 
 /// A mesh by its faces, as OpenFOAM has it: inner faces first, in upper-triangular order: by their owner, the
 /// cell of smaller number, which their normals point out of, and for one owner by the neighbour. Then those
@@ -19,14 +38,16 @@ struct PolyMesh {
     Vector<3> separation = Vector<3>::Zero();  ///< of cyclic ones, from here to the neighbour
     std::size_t first = 0, count = 0;
   };
-  std::vector<FaceCorners> faces;
+  FacesOfMesh faces;
   std::vector<std::uint32_t> owner;      ///< of every face
   std::vector<std::uint32_t> neighbour;  ///< of every inner face
   std::vector<Patch> patches;
+  std::size_t cells = 0;
 };
 
-/// Patches are surfaces that bound the mesh; what lies between two regions are inner faces. Cost: about 1 µs
-/// and 60 bytes a tetrahedron. Throws Error{bad_mesh} where triangles of opposite ends are no images.
+/// Cells are tetrahedra and, after these, prisms. Patches are surfaces that bound the mesh; what lies between
+/// two regions are inner faces. Cost: about 1 µs and 60 bytes a cell. Throws Error{bad_mesh} where triangles
+/// of opposite ends are no images.
 PolyMesh poly_mesh_of(const VolumeMesh&, const MeshGroups&);
 
 }  // namespace bernal

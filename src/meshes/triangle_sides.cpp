@@ -26,22 +26,41 @@ std::int32_t region_of(const VolumeMesh& mesh, std::size_t triangle, std::size_t
   return mesh.patches[mesh.patch[triangle]].regions[side];
 }
 
+/// The triangles on top of stacks of prisms in the place of those below.
+std::vector<FaceCorners> triangles_on_top(const VolumeMesh& mesh) {
+  std::vector<FaceCorners> triangles = mesh.triangles;
+  for (std::size_t s = 0; s < mesh.stacks.triangle.size(); ++s) {
+    FaceCorners& triangle = triangles[mesh.stacks.triangle[s]];
+    const PrismCorners &low = mesh.stacks.prisms[s * mesh.stacks.layers], &high = mesh.stacks.top(s);
+    for (std::uint32_t& corner : triangle)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (low[k] == corner) {
+          corner = high[k + 3];
+          break;
+        }
+  }
+  return triangles;
+}
+
 }  // namespace
 
 std::vector<std::array<TriangleSide, 2>> found_sides(const VolumeMesh& mesh) {
+  const std::vector<FaceCorners> on_top =
+      mesh.stacks.empty() ? std::vector<FaceCorners>() : triangles_on_top(mesh);
+  const std::vector<FaceCorners>& triangles = mesh.stacks.empty() ? mesh.triangles : on_top;
   // Triangles by their least corner: those of vertex v stand from first[v] to first[v + 1].
   const auto least = [](const FaceCorners& c) { return std::min({c[0], c[1], c[2]}); };
-  std::vector<std::uint32_t> first(mesh.vertices.size() + 1, 0), sorted(mesh.triangles.size());
-  for (const FaceCorners& triangle : mesh.triangles) ++first[least(triangle) + 1];
+  std::vector<std::uint32_t> first(mesh.vertices.size() + 1, 0), sorted(triangles.size());
+  for (const FaceCorners& triangle : triangles) ++first[least(triangle) + 1];
   for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
   std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) sorted[next[least(mesh.triangles[t])]++] = t;
-  std::vector<std::array<TriangleSide, 2>> sides(mesh.triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) sorted[next[least(triangles[t])]++] = t;
+  std::vector<std::array<TriangleSide, 2>> sides(triangles.size());
   for (std::uint32_t t = 0; t < mesh.tetrahedra.size(); ++t)
     for (std::uint8_t f = 0; f < 4; ++f) {
       const FaceCorners c = from_least(face_of(mesh, t, f));
       for (std::uint32_t k = first[c[0]]; k < first[c[0] + 1]; ++k) {
-        const FaceCorners of = from_least(mesh.triangles[sorted[k]]);
+        const FaceCorners of = from_least(triangles[sorted[k]]);
         const bool is_same = of == c, is_turned = of[1] == c[2] && of[2] == c[1];
         if (!is_same && !is_turned) continue;
         const std::size_t side = is_same ? 0 : 1;

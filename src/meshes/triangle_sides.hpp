@@ -16,8 +16,8 @@ struct TriangleSide {
   bool is_there() const { return tetrahedron != none; }
 };
 
-/// Of every triangle the tetrahedra behind it and in front of it, whatever their regions. Throws
-/// Error{bad_mesh} where two are on one side. Cost: some 100 ns a tetrahedron.
+/// Of every triangle the tetrahedra behind it and in front of it, or of the stack of prisms on it, whatever
+/// their regions. Throws Error{bad_mesh} where two are on one side. Cost: some 100 ns a tetrahedron.
 std::vector<std::array<TriangleSide, 2>> found_sides(const VolumeMesh&);
 
 /// The same, and the proof that a mesh keeps its surface. Throws Error{bad_mesh} unless on each side

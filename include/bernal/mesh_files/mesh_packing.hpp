@@ -22,6 +22,7 @@ struct MeshFormat {
   std::string what;       ///< for whom, and what the files hold
   std::string ending;     ///< of the file's name: ".msh"
   int largest_order = 2;  ///< of its elements
+  bool has_prisms = false;
 };
 /// All of them, in the order in which users see them.
 std::vector<MeshFormat> mesh_formats();
@@ -39,6 +40,9 @@ struct MeshFileOptions {
   double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
   std::string cut = {};        ///< the box that is meshed: "x = 1..4, y = 1..4, z = 0..5"; all if empty
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
+  int prisms = 0;              ///< layers of prisms in the fluid, on spheres and walls where there is room
+  double prism_height = 0.1;   ///< of all layers together, on walls in mean radii
+  double prism_growth = 1.2;   ///< height of a layer over that of the one nearer to the surface
   int order = 1;               ///< 2: with middles of edges, on the true spheres
 };
 
@@ -85,7 +89,14 @@ struct BedMeshReport {
     double sicn = 1;
     Vector<3> center = Vector<3>::Zero();
   };
-  std::vector<Place> worst;                      ///< up to ten tetrahedra, the worst first
+  std::size_t prisms = 0;        ///< in layers on spheres and walls
+  std::size_t prism_ends = 0;    ///< pyramids and flat tetrahedra in which the layers end
+  double prism_share = 0;        ///< of the area of spheres that whole prisms stand on
+  double mean_prism_height = 0;  ///< of all layers together, as a length
+  double least_prism_height = 0;
+  double least_scaled_jacobian =
+      1;                     ///< of cells in layers, 1 for an upright prism on an equal-sided triangle
+  std::vector<Place> worst;  ///< up to ten tetrahedra, the worst first
   std::optional<double> least_curved_sicn = {};  ///< of second order
   /// Edges on round surfaces, of second order, and those of them that stay straight where elements would
   /// fold.
@@ -127,9 +138,10 @@ struct MeshedPacking {
 void require_mesh_format(const MeshFileOptions&, int dimension);
 
 /// Meshes the space between the spheres of a packing, and the spheres where that is asked for, by
-/// tetrahedra that fit to each other, and writes them in the scene's unit to `file` and for some formats to
-/// others beside it. All appear whole, or none; existing files of these names are replaced. The surface is
-/// bernal's own, equal at opposite ends of periods; TetGen fills it, a program of its own.
+/// tetrahedra, and prisms where these are asked for, that fit to each other, and writes them in the scene's
+/// unit to `file` and for some formats to others beside it. All appear whole, or none; existing files of
+/// these names are replaced. The surface is bernal's own, equal at opposite ends of periods; TetGen fills it,
+/// a program of its own.
 ///
 /// Throws as `require_mesh_format`; Error{bad_argument} for containers that cannot be meshed and where TetGen
 /// is not installed, with the remedy; Error{bad_mesh} where TetGen fails; Error{cannot_write} if a file of a
