@@ -151,6 +151,7 @@ Command mesh_command() {
        .lists = {{.title = "Formats", .entries = entries_of_mesh_formats()}},
        .examples = {{"bernal mesh out --to openfoam -o case/bed.foam",
                      "polyMesh of the pores, for checkMesh"},
+                    {"bernal mesh out --to openfoam -o case/bed.foam --prisms 3", "with boundary layers"},
                     {"bernal mesh out --to gmsh -o bed.msh --regions all",
                      "pores and spheres, for Gmsh, meshio"},
                     {"bernal mesh out --to abaqus -o rve.inp --regions all --order 2", "C3D10, for CalculiX"},

@@ -11,10 +11,11 @@ namespace bernal {
 
 /// Layers of prisms in the fluid, on spheres and walls.
 struct BoundaryLayerOptions {
-  int layers = 0;       ///< none: no prisms
-  double height = 0.1;  ///< of all layers together, at most, in radii; on walls in mean radii of spheres
-  double growth = 1.2;  ///< height of a layer over that of the one below
-  double per_gap = 2;   ///< as of SurfaceMeshOptions: edges in widths of the gap that prisms leave
+  int layers = 0;            ///< none: no prisms
+  double height = 0.1;       ///< of all layers together, at most, in radii; on walls in mean radii of spheres
+  double growth = 1.2;       ///< height of a layer over that of the one below
+  double per_gap = 2;        ///< as of SurfaceMeshOptions: edges in widths of the gap that prisms leave
+  double sphere_edge = 0.3;  ///< as of SurfaceMeshOptions
   bool on_flat_walls = true;  ///< else walls that are planes have none: inlets, outlets, faces of a cut box
 };
 
@@ -28,8 +29,9 @@ std::vector<double> shares_of_layers(const BoundaryLayerOptions&);
 /// triangle of another patch, less half of what tetrahedra need, so those of surfaces that face each other
 /// stay apart; where that is less than a third of the height asked for, or flat beside the edges there, there
 /// are none. Where layers end, they are high enough beside the edges there for the faces of each cell to
-/// determine a gradient, where three layers or fewer allow that. Between vertices that are next to each other
-/// the height changes by at most half of the distance: prisms end in a slope, without a step.
+/// determine a gradient, as far as few layers and the height asked for allow that. Between
+/// vertices that are next to each other the height changes by at most half of the distance: prisms end in a
+/// slope, without a step.
 ///
 /// Precondition: the fluid alone has a region. The same for any number of threads. Cost: some µs a vertex.
 std::vector<Vector<3>> prism_columns(const ConformingSurface&, const BoundaryLayerOptions&);

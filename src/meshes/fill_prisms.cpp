@@ -80,7 +80,7 @@ PrismReport report_of(const ConformingSurface& surface, const std::vector<Vector
     report.prisms += distinct_corners(prism).size() == prism.size();
     report.least_scaled_jacobian = std::min(report.least_scaled_jacobian, scaled_jacobian(mesh, prism));
   }
-  if (!mesh.stacks.empty()) report.ends = (mesh.stacks.prisms.size() - report.prisms) / mesh.stacks.layers;
+  report.ends = mesh.stacks.prisms.size() - report.prisms;
   return report;
 }
 

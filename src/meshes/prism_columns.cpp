@@ -23,7 +23,7 @@ constexpr std::uint32_t on_none = std::numeric_limits<std::uint32_t>::max();
 
 /// Of columns beside triangles without prisms, over the longest edge there. A flat tetrahedron between two
 /// triangles, of height e edges, has a determinant of inner faces (see TetrahedraNear) of some 120 e^4 on the
-/// surface and 20 e^4 above; what checkMesh asks for, 0.001, sets e. But many layers do not get that high.
+/// surface and 20 e^4 above; what checkMesh asks for, 0.001, sets e. Many layers do not get that high.
 double flattest_end(const std::vector<double>& shares) {
   constexpr double on_surface = 0.06, above = 0.09, most = 0.3;
   double least = on_surface / shares[0];
@@ -38,7 +38,10 @@ class PrismColumns {
       : surface_(surface),
         options_(options),
         tree_(boxes_of(surface), 8),
-        flattest_end_(flattest_end(shares_of_layers(options))) {
+        // What is asked for counts as high enough on spheres.
+        flattest_column_(std::min(flattest_column, 0.5 * options.height / options.sphere_edge)),
+        flattest_end_(
+            std::min(flattest_end(shares_of_layers(options)), 0.8 * options.height / options.sphere_edge)) {
     find_patches();
     find_edges();
   }
@@ -171,7 +174,7 @@ class PrismColumns {
   }
 
   double lowest(std::uint32_t v) const {
-    return std::max(lowest_column * height_asked_for(patch_[v]), flattest_column * longest_[v]);
+    return std::max(lowest_column * height_asked_for(patch_[v]), flattest_column_ * longest_[v]);
   }
 
   double height_with_room(std::uint32_t v) const {
@@ -201,7 +204,7 @@ class PrismColumns {
       const FaceCorners& c = surface_.triangles[t];
       if (room[t] >= mean(c)) continue;
       for (const std::uint32_t v : c)
-        if (height_[v] > room[t]) height_[v] = room[t] < lowest(v) ? 0 : room[t];
+        if (height_[v] > std::max(room[t], 0.0)) height_[v] = room[t] < lowest(v) ? 0 : room[t];
     }
   }
 
@@ -244,7 +247,8 @@ class PrismColumns {
     }
   }
 
-  /// The vertices with columns of triangles on which layers end too flat for gradients.
+  /// The vertices with columns of triangles on which layers end too flat for gradients, though higher ones
+  /// are asked for.
   std::vector<std::uint32_t> flat_ends() const {
     std::vector<std::uint32_t> flat;
     for (const FaceCorners& c : surface_.triangles) {
@@ -270,7 +274,8 @@ class PrismColumns {
   std::vector<std::uint32_t> beside_;
   std::vector<double> longest_, height_;  ///< of each vertex
   double mean_radius_ = 0;
-  double flattest_end_;  ///< least height of columns where layers end, over the longest edge of a triangle
+  double flattest_column_;  ///< as the constant
+  double flattest_end_;     ///< least height of columns where layers end, over the longest edge of a triangle
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Meshes of bernal in other programs: tests/clients/with_meshes.py [BERNAL]
 
-Meshes a bed of bridged spheres in a box and one in a cylinder. OpenFOAM's checkMesh finds the fluid good; CalculiX solves
+Meshes a bed of bridged spheres in a box and one in a cylinder. OpenFOAM's checkMesh finds the fluid good, with prisms, too; CalculiX solves
 heat conduction through fluid, spheres and bridges at the first try, and the conductance lies between the bounds that hold
 for any arrangement of these volumes (Wiener 1912); meshio reads volumes and groups as bernal states them. Each is left
 out with a word where it is not installed. Debian: tetgen openfoam calculix-ccx python3-meshio. Takes half a minute.
@@ -66,16 +66,18 @@ def mesh(result, to, file, *options):
     return report
 
 
-def with_openfoam(result, name):
+def with_openfoam(result, name, *options):
     case = result.folder / "case"
-    (case / "system").mkdir(parents=True)
+    (case / "system").mkdir(parents=True, exist_ok=True)
     (case / "system" / "controlDict").write_text(CONTROL)
-    report = mesh(result, "openfoam", "case/bed.foam")
+    report = mesh(result, "openfoam", "case/bed.foam", *options)
     os.environ.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
     said = run("checkMesh", "-case", case, "-allGeometry", "-allTopology", folder=result.folder)
     expect("Mesh OK" in said, f"{name}: checkMesh finds the mesh good")
     cells = [line.split()[-1] for line in said.splitlines() if line.strip().startswith("cells:")]
-    expect(cells == [str(report["tetrahedra"])], f"{name}: it counts {cells} cells")
+    count = sum(report[kind] for kind in ("tetrahedra", "prisms", "prism_ends"))
+    expect(cells == [str(count)], f"{name}: it counts {cells} cells")
+    return report
 
 
 def with_calculix(result):
@@ -110,15 +112,41 @@ def with_meshio(result, meshio):
     expect(count == report["tetrahedra"], f"meshio: {count} tetrahedra in the .vtu")
 
 
+def with_prisms(result, meshio):
+    """Prisms, pyramids and tetrahedra fill the fluid; all are turned as meshio and VTK have them."""
+    for to, file in ("gmsh", "prisms.msh"), ("vtu", "prisms.vtu"):
+        report = mesh(result, to, file, "--prisms", "3")
+        read = meshio.read(result.folder / file)
+        counts, least, volume = dict.fromkeys(("wedge", "pyramid", "tetra"), 0), numpy.inf, 0
+        for cells in read.cells:
+            if cells.type not in counts:
+                continue
+            counts[cells.type] += len(cells.data)
+            p = [read.points[cells.data[:, k]] for k in range(cells.data.shape[1])]
+            for a, b, c, d in {"wedge": ((0, 1, 2, 3), (1, 2, 3, 4), (2, 3, 4, 5)),
+                               "pyramid": ((0, 1, 2, 4), (0, 2, 3, 4)), "tetra": ((0, 1, 2, 3),)}[cells.type]:
+                of_part = ((p[b] - p[a]) * numpy.cross(p[c] - p[a], p[d] - p[a])).sum(axis=1) / 6
+                least, volume = min(least, of_part.min()), volume + of_part.sum()
+        expect(counts["wedge"] == report["prisms"], f"{file}: {counts['wedge']} prisms")
+        of_cells = sum(report[kind] for kind in ("tetrahedra", "prisms", "prism_ends"))
+        expect(sum(counts.values()) == of_cells, f"{file}: {counts} of {of_cells} cells")
+        expect(least > 0, f"{file}: no cell is turned inside out")
+        known = report["groups"][0]["volume"]
+        expect(abs(volume / known - 1) < 1e-9, f"{file}: cells fill {volume:.9g} of {known:.9g}")
+
+
 with tempfile.TemporaryDirectory() as made:
     box = Result(Path(made) / "box", BOX)
     column = Result(Path(made) / "column", COLUMN)
     if find_program("checkMesh", "openfoam"):
         with_openfoam(box, "box")
         with_openfoam(column, "column")
+        report = with_openfoam(column, "prisms", "--prisms", "3")
+        expect(report["prism_share"] > 0.3, f"prisms stand on {100 * report['prism_share']:.0f} % of the spheres")
     if find_program("ccx", "calculix-ccx"):
         with_calculix(box)
     meshio, numpy = find_module("meshio", "python3-meshio"), find_module("numpy", "python3-numpy")
     if meshio and numpy:
         with_meshio(box, meshio)
+        with_prisms(box, meshio)
     finish()

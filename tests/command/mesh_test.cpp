@@ -118,6 +118,39 @@ TEST(MeshCommand, LayersAreRegionsOfTheStatedVolumes) {
                                {"cut"});
 }
 
+TEST(MeshCommand, PrismsStandInTheFluid) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  const auto mesh = [&](const std::string& format, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"mesh", result.out(), "--to", format, "-o", result.folder / "bed.file"};
+    words.insert(words.end(), more.begin(), more.end());
+    return bernal(words);
+  };
+  const auto report_of = [&](const std::string& format, std::vector<std::string> more) {
+    more.emplace_back("--json");
+    const Ended ended = mesh(format, more);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  };
+  const auto without = report_of("vtu", {});
+  EXPECT_EQ(without["prisms"], 0);
+  for (const char* format : {"openfoam", "vtu", "gmsh"}) {
+    const auto with = report_of(format, {"--prisms", "3", "--prism-height", "0.08", "--prism-growth", "1.3"});
+    EXPECT_GT(with["prisms"], 1000) << format;
+    EXPECT_GT(with["prism_ends"], 0);
+    EXPECT_GT(with["prism_share"], 0.4);
+    EXPECT_LE(with["mean_prism_height"], 0.04 * (1 + 1e-12));
+    EXPECT_GT(with["least_scaled_jacobian"], 0.2);
+    EXPECT_GE(with["least_sicn"], 0.1);
+    // They belong to the fluid, whose surface stays.
+    EXPECT_NEAR(with["meshed_porosity"].get<double>(), without["meshed_porosity"].get<double>(), 1e-10);
+    EXPECT_EQ(with["porosity"], without["porosity"]);
+  }
+  expect_refused_in_one_line(mesh("abaqus", {"--prisms", "3"}), {"prisms", "abaqus"});
+  expect_refused_in_one_line(mesh("gmsh", {"--prisms", "3", "--regions", "all"}), {"prisms", "fluid"});
+  expect_refused_in_one_line(mesh("gmsh", {"--prisms", "3", "--order", "2"}), {"prisms", "order"});
+}
+
 TEST(MeshCommand, CadPartsKeepTheirVolumeInTheMesh) {
   if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   Folder folder;

@@ -280,7 +280,7 @@ TEST(PolyMesh, FacesAreInUpperTriangularOrderAndEndsAreImages) {
   // Every cell is closed: the areas of its faces, outwards, cancel out.
   std::vector<Vector<3>> sum(mesh.tetrahedra.size(), Vector<3>::Zero());
   for (std::size_t f = 0; f < poly.faces.size(); ++f) {
-    const FaceCorners& c = poly.faces[f];
+    const auto c = poly.faces[f];
     const Vector<3> area =
         (mesh.vertices[c[1]] - mesh.vertices[c[0]]).cross(mesh.vertices[c[2]] - mesh.vertices[c[0]]);
     sum[poly.owner[f]] += area;
