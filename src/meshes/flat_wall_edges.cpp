@@ -23,6 +23,7 @@ class FlatEdgePoints {
       : draft_(draft), walls_(walls), corners_(corners), of_part_(walls.parts.size()) {
     vertex_.assign(corners.size(), Delaunay::none);
     acute_.resize(walls.edges.size());
+    points_when_checked_.assign(walls.edges.size(), 0);
   }
 
   std::vector<std::vector<std::uint32_t>> made() {
@@ -155,9 +156,14 @@ class FlatEdgePoints {
     return is_from_lower ? shell / length : 1 - shell / length;
   }
 
+  /// Only edges whose parts got points since are looked at: along narrow parts a point asks for the next.
   bool divide_by_others() {
     bool has_changed = false;
     for (std::uint32_t e = 0; e < walls_.edges.size(); ++e) {
+      std::size_t points = 0;
+      for (const std::uint32_t part : walls_.edges[e].parts) points += of_part_[part].points.size();
+      if (points == points_when_checked_[e]) continue;
+      points_when_checked_[e] = points;
       throw_if_interrupted();
       const std::vector<std::pair<double, std::uint32_t>> points(on_edge_[e].begin(), on_edge_[e].end());
       for (std::size_t k = 0; k + 1 < points.size(); ++k) {
@@ -210,6 +216,7 @@ class FlatEdgePoints {
   std::vector<std::array<bool, 2>> acute_;
   std::vector<std::map<double, std::uint32_t>> on_edge_;  ///< by share of the edge
   std::vector<PartPoints> of_part_;
+  std::vector<std::size_t> points_when_checked_;  ///< of an edge, in its parts
 };
 
 }  // namespace
