@@ -40,8 +40,8 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
     fmt::print("; {} with a gap instead, at walls where no bridge fits into a flat part",
                grouped(report.gaps_at_edges));
   if (report.wall_deviation > 0)
-    fmt::print("\nwalls        flat facets around the round ones, up to {:.3g} {} off them",
-               report.wall_deviation, unit);
+    fmt::print("\nwalls        triangles of curved walls, up to {:.3g} {} off them", report.wall_deviation,
+               unit);
   fmt::print("\nsurface      {} triangles, least edge {:.4g} {}, least angle {:.2f} degrees near {}\n",
              grouped(report.triangles), report.least_edge, unit, report.least_triangle_angle,
              text_of_place(report.place_of_least_angle));

@@ -54,6 +54,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
   report.contact_area = stated.contact_area;
+  report.wall_deviation += stated.wall_deviation;
 }
 
 void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, BedMeshReport& report) {

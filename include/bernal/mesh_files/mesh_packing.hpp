@@ -75,7 +75,8 @@ struct BedMeshReport {
   std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
   std::size_t gaps_at_edges = 0;
-  double wall_deviation = 0;  ///< how far facets stand off the round walls of a solid of revolution
+  /// How far triangles of walls are off those of a CAD part, or off round walls of a solid of revolution.
+  double wall_deviation = 0;
 
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
