@@ -64,14 +64,15 @@ void print_quality(const BedMeshReport& report) {
 
 void print_report(const BedMeshReport& report, std::string_view unit) {
   print_surface(report, unit);
-  print_quality(report);
-  fmt::print("porosity     {:.6f} in closed form, {:.6f} of the mesh", report.porosity,
-             report.meshed_porosity);
+  if (!report.is_surface) print_quality(report);
+  fmt::print("porosity     {:.6f} in closed form, {:.6f} {}", report.porosity, report.meshed_porosity,
+             report.is_surface ? "between the triangles" : "of the mesh");
   if (report.contact_area > 0) fmt::print("; contact area {:.6g} {}^2", report.contact_area, unit);
   fmt::print("\n");
   for (const BedMeshReport::Group& group : report.groups) {
-    fmt::print("{:<12} {} tetrahedra, volume {:.9g} {}^3", group.name, grouped(group.tetrahedra),
-               group.volume, unit);
+    fmt::print("{:<12} ", group.name);
+    if (!report.is_surface) fmt::print("{} tetrahedra, ", grouped(group.tetrahedra));
+    fmt::print("volume {:.9g} {}^3", group.volume, unit);
     if (group.stated_volume) fmt::print(", {:.9g} in closed form", *group.stated_volume);
     fmt::print("\n");
   }
@@ -148,6 +149,8 @@ Command mesh_command() {
                     {"bernal mesh out --to gmsh -o bed.msh --regions all",
                      "pores and spheres, for Gmsh, meshio"},
                     {"bernal mesh out --to abaqus -o rve.inp --regions all --order 2", "C3D10, for CalculiX"},
+                    {"bernal mesh out --to snappy -o case/bed.foam --prisms 2",
+                     "case of snappyHexMesh, with layers; needs no tetgen"},
                     {"bernal mesh out --to vtu -o bed.vtu --contact gap", "for ParaView, with quality"}},
        .exit_codes = {{"0", "the mesh is there, and its least SICN is 0.1 or more"},
                       {"2", "bad input, or no mesh"},

@@ -27,7 +27,7 @@ namespace {
 
 const std::vector<MeshWriter>& mesh_writers() {
   static const std::vector<MeshWriter> all = {gmsh_of_mesh(), abaqus_of_mesh(), openfoam_of_mesh(),
-                                              vtu_of_mesh()};
+                                              snappy_of_mesh(), vtu_of_mesh()};
   return all;
 }
 
@@ -162,10 +162,39 @@ void name_spheres(ConformingSurface& surface, const std::vector<std::uint32_t>& 
     if (region.sphere) region.sphere = of_packing[*region.sphere];
 }
 
-/// The mesh, its names, and what it is like.
+/// The triangles of a surface as a mesh without tetrahedra.
+VolumeMesh without_filling(ConformingSurface&& surface) {
+  return {.vertices = std::move(surface.vertices),
+          .tetrahedra = {},
+          .region = {},
+          .triangles = std::move(surface.triangles),
+          .patch = std::move(surface.patch),
+          .patches = std::move(surface.patches),
+          .regions = std::move(surface.regions),
+          .periodic = std::move(surface.periodic)};
+}
+
+/// Sizes of triangles: those that another program makes cells from are finer than these, but in narrow gaps
+/// no shorter for that.
+SurfaceMeshOptions sizes_of(const MeshFileOptions& options, bool is_surface) {
+  constexpr double finer = 0.5, any_gap = 100;
+  SurfaceMeshOptions sizes{.sphere_edge = options.sphere_edge,
+                           .neck_edge = options.neck_edge,
+                           .per_gap = options.gap_edge,
+                           .solids = options.solids,
+                           .per_layer = options.layer_edge};
+  if (!is_surface) return sizes;
+  sizes.sphere_edge *= finer;
+  sizes.neck_edge *= finer;
+  sizes.per_gap = any_gap;
+  return sizes;
+}
+
+/// The mesh, its names, and what it is of.
 struct NamedMesh {
   VolumeMesh mesh;
   MeshGroups groups;
+  Solids solids;
 };
 NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
                   BedMeshReport& report) {
@@ -174,22 +203,24 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.domain_volume = volume_of(packing.domain);
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
-  const auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
-  ConformingSurface surface = conforming_surface(solids,
-                                                 {.sphere_edge = options.sphere_edge,
-                                                  .neck_edge = options.neck_edge,
-                                                  .per_gap = options.gap_edge,
-                                                  .solids = options.solids,
-                                                  .per_layer = options.layer_edge},
-                                                 monitor);
+  auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
+  const MeshWriter& writer = mesh_writer_of(options.format);
+  report.is_surface = writer.format.is_surface;
+  ConformingSurface surface = conforming_surface(solids, sizes_of(options, report.is_surface), monitor);
   name_spheres(surface, of_packing);
   take_surface(surface, report);
   // The surface states what is between its own walls.
   report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
   report.parts.push_back({"surface", watch.seconds()});
+  if (report.is_surface) {
+    report.meshed_porosity = surface.statement.meshed_fluid_volume / report.domain_volume;
+    report.groups.push_back({"fluid", surface.statement.meshed_fluid_volume, surface.statement.fluid_volume});
+    VolumeMesh mesh = without_filling(std::move(surface));
+    MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
+    return {std::move(mesh), std::move(groups), std::move(solids)};
+  }
   FillReport filled;
-  VolumeMesh mesh = fill_with_layers(surface, {.for_gradients = mesh_writer_of(options.format).for_gradients},
-                                     filled, monitor);
+  VolumeMesh mesh = fill_with_layers(surface, {.for_gradients = writer.for_gradients}, filled, monitor);
   report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
                           filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
@@ -202,7 +233,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   }
   MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
   take_mesh(mesh, groups, report);
-  return {std::move(mesh), std::move(groups)};
+  return {std::move(mesh), std::move(groups), std::move(solids)};
 }
 
 std::vector<std::string> names_of_files(const MeshWriter& writer, const fs::path& name) {
@@ -226,6 +257,11 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   for (const MeshKey& key : mesh_keys()) require_in_range(key, options);
   if (options.order > format.largest_order)
     refuse(fmt::format("the format {} has no elements of second order", format.name));
+  if (options.prisms > 0 && !format.has_prisms)
+    refuse(fmt::format("prisms are not written in the format {}", format.name));
+  if (format.is_surface && options.solids)
+    refuse(
+        fmt::format("the format {} is for a mesh of the fluid alone; leave out ‹regions=all›", format.name));
 }
 
 BedMeshReport measure_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor) {
@@ -243,7 +279,7 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   require_free(folder, names_of_files(writer, name));
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;
-  const auto [mesh, groups] = mesh_of(packing, options, monitor, report);
+  const auto [mesh, groups, solids] = mesh_of(packing, options, monitor, report);
   const Stopwatch writing;
   monitor.report({"write", -1, options.format});
   StagedFolder staged(folder);
@@ -254,7 +290,10 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
                               .folder = folder,
                               .name = name,
                               .title = title,
-                              .unit = name_of(packing.scene.unit)},
+                              .unit = name_of(packing.scene.unit),
+                              .metres = metres_per(packing.scene.unit),
+                              .solids = solids,
+                              .options = options},
                              staged);
   meshed.files = staged.publish();
   for (fs::path& path : meshed.files) path = path.lexically_normal();
