@@ -40,8 +40,8 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
     fmt::print("; {} with a gap instead, at walls where no bridge fits into a flat part",
                grouped(report.gaps_at_edges));
   if (report.wall_deviation > 0)
-    fmt::print("\nwalls        flat facets around the round ones, up to {:.3g} {} off them",
-               report.wall_deviation, unit);
+    fmt::print("\nwalls        triangles of curved walls, up to {:.3g} {} off them", report.wall_deviation,
+               unit);
   fmt::print("\nsurface      {} triangles, least edge {:.4g} {}, least angle {:.2f} degrees near {}\n",
              grouped(report.triangles), report.least_edge, unit, report.least_triangle_angle,
              text_of_place(report.place_of_least_angle));
@@ -70,14 +70,15 @@ void print_quality(const BedMeshReport& report, std::string_view unit) {
 
 void print_report(const BedMeshReport& report, std::string_view unit) {
   print_surface(report, unit);
-  print_quality(report, unit);
-  fmt::print("porosity     {:.6f} in closed form, {:.6f} of the mesh", report.porosity,
-             report.meshed_porosity);
+  if (!report.is_surface) print_quality(report, unit);
+  fmt::print("porosity     {:.6f} in closed form, {:.6f} {}", report.porosity, report.meshed_porosity,
+             report.is_surface ? "between the triangles" : "of the mesh");
   if (report.contact_area > 0) fmt::print("; contact area {:.6g} {}^2", report.contact_area, unit);
   fmt::print("\n");
   for (const BedMeshReport::Group& group : report.groups) {
-    fmt::print("{:<12} {} tetrahedra, volume {:.9g} {}^3", group.name, grouped(group.tetrahedra),
-               group.volume, unit);
+    fmt::print("{:<12} ", group.name);
+    if (!report.is_surface) fmt::print("{} tetrahedra, ", grouped(group.tetrahedra));
+    fmt::print("volume {:.9g} {}^3", group.volume, unit);
     if (group.stated_volume) fmt::print(", {:.9g} in closed form", *group.stated_volume);
     fmt::print("\n");
   }
@@ -155,6 +156,8 @@ Command mesh_command() {
                     {"bernal mesh out --to gmsh -o bed.msh --regions all",
                      "pores and spheres, for Gmsh, meshio"},
                     {"bernal mesh out --to abaqus -o rve.inp --regions all --order 2", "C3D10, for CalculiX"},
+                    {"bernal mesh out --to snappy -o case/bed.foam --prisms 2",
+                     "case of snappyHexMesh, with layers; needs no tetgen"},
                     {"bernal mesh out --to vtu -o bed.vtu --contact gap", "for ParaView, with quality"}},
        .exit_codes = {{"0", "the mesh is there, and its least SICN is 0.1 or more"},
                       {"2", "bad input, or no mesh"},

@@ -28,7 +28,7 @@ namespace {
 
 const std::vector<MeshWriter>& mesh_writers() {
   static const std::vector<MeshWriter> all = {gmsh_of_mesh(), abaqus_of_mesh(), openfoam_of_mesh(),
-                                              vtu_of_mesh()};
+                                              snappy_of_mesh(), vtu_of_mesh()};
   return all;
 }
 
@@ -55,6 +55,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
   report.contact_area = stated.contact_area;
+  report.wall_deviation += stated.wall_deviation;
 }
 
 void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, BedMeshReport& report) {
@@ -162,7 +163,6 @@ void name_spheres(ConformingSurface& surface, const std::vector<std::uint32_t>& 
     if (region.sphere) region.sphere = of_packing[*region.sphere];
 }
 
-/// The mesh, its names, and what it is like.
 /// By tetrahedra, and prisms where these are asked for.
 VolumeMesh filled_mesh(const ConformingSurface& surface, const Solids& solids, const MeshFileOptions& options,
                        FillReport& filled, const Monitor& monitor, BedMeshReport& report) {
@@ -175,6 +175,7 @@ VolumeMesh filled_mesh(const ConformingSurface& surface, const Solids& solids, c
                         .height = options.prism_height,
                         .growth = options.prism_growth,
                         .per_gap = options.gap_edge,
+                        .sphere_edge = options.sphere_edge,
                         .on_flat_walls = !solids.is_cut && !std::holds_alternative<Cylinder>(solids.domain)},
                        tetrahedra, filled, prisms, monitor);
   report.prisms = prisms.prisms;
@@ -186,9 +187,39 @@ VolumeMesh filled_mesh(const ConformingSurface& surface, const Solids& solids, c
   return mesh;
 }
 
+/// The triangles of a surface as a mesh without tetrahedra.
+VolumeMesh without_filling(ConformingSurface&& surface) {
+  return {.vertices = std::move(surface.vertices),
+          .tetrahedra = {},
+          .region = {},
+          .triangles = std::move(surface.triangles),
+          .patch = std::move(surface.patch),
+          .patches = std::move(surface.patches),
+          .regions = std::move(surface.regions),
+          .periodic = std::move(surface.periodic)};
+}
+
+/// Sizes of triangles: those that another program makes cells from are finer than these, but in narrow gaps
+/// no shorter for that.
+SurfaceMeshOptions sizes_of(const MeshFileOptions& options, bool is_surface) {
+  constexpr double finer = 0.5, any_gap = 100;
+  SurfaceMeshOptions sizes{.sphere_edge = options.sphere_edge,
+                           .neck_edge = options.neck_edge,
+                           .per_gap = options.gap_edge,
+                           .solids = options.solids,
+                           .per_layer = options.layer_edge};
+  if (!is_surface) return sizes;
+  sizes.sphere_edge *= finer;
+  sizes.neck_edge *= finer;
+  sizes.per_gap = any_gap;
+  return sizes;
+}
+
+/// The mesh, its names, and what it is of.
 struct NamedMesh {
   VolumeMesh mesh;
   MeshGroups groups;
+  Solids solids;
 };
 NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
                   BedMeshReport& report) {
@@ -197,19 +228,22 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.domain_volume = volume_of(packing.domain);
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
-  const auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
-  ConformingSurface surface = conforming_surface(solids,
-                                                 {.sphere_edge = options.sphere_edge,
-                                                  .neck_edge = options.neck_edge,
-                                                  .per_gap = options.gap_edge,
-                                                  .solids = options.solids,
-                                                  .per_layer = options.layer_edge},
-                                                 monitor);
+  auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
+  const MeshWriter& writer = mesh_writer_of(options.format);
+  report.is_surface = writer.format.is_surface;
+  ConformingSurface surface = conforming_surface(solids, sizes_of(options, report.is_surface), monitor);
   name_spheres(surface, of_packing);
   take_surface(surface, report);
   // The surface states what is between its own walls.
   report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
   report.parts.push_back({"surface", watch.seconds()});
+  if (report.is_surface) {
+    report.meshed_porosity = surface.statement.meshed_fluid_volume / report.domain_volume;
+    report.groups.push_back({"fluid", surface.statement.meshed_fluid_volume, surface.statement.fluid_volume});
+    VolumeMesh mesh = without_filling(std::move(surface));
+    MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
+    return {std::move(mesh), std::move(groups), std::move(solids)};
+  }
   FillReport filled;
   VolumeMesh mesh = filled_mesh(surface, solids, options, filled, monitor, report);
   report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
@@ -224,7 +258,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   }
   MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
   take_mesh(mesh, groups, report);
-  return {std::move(mesh), std::move(groups)};
+  return {std::move(mesh), std::move(groups), std::move(solids)};
 }
 
 std::vector<std::string> names_of_files(const MeshWriter& writer, const fs::path& name) {
@@ -248,6 +282,9 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   for (const MeshKey& key : mesh_keys()) require_in_range(key, options);
   if (options.order > format.largest_order)
     refuse(fmt::format("the format {} has no elements of second order", format.name));
+  if (format.is_surface && options.solids)
+    refuse(
+        fmt::format("the format {} is for a mesh of the fluid alone; leave out ‹regions=all›", format.name));
   if (options.prisms == 0) return;
   if (!format.has_prisms) refuse(fmt::format("prisms are not written in the format {}", format.name));
   if (options.solids || options.order > 1)
@@ -269,7 +306,7 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   require_free(folder, names_of_files(writer, name));
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;
-  const auto [mesh, groups] = mesh_of(packing, options, monitor, report);
+  const auto [mesh, groups, solids] = mesh_of(packing, options, monitor, report);
   const Stopwatch writing;
   monitor.report({"write", -1, options.format});
   StagedFolder staged(folder);
@@ -280,7 +317,10 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
                               .folder = folder,
                               .name = name,
                               .title = title,
-                              .unit = name_of(packing.scene.unit)},
+                              .unit = name_of(packing.scene.unit),
+                              .metres = metres_per(packing.scene.unit),
+                              .solids = solids,
+                              .options = options},
                              staged);
   meshed.files = staged.publish();
   for (fs::path& path : meshed.files) path = path.lexically_normal();

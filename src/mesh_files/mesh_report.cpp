@@ -21,6 +21,7 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"least_edge", report.least_edge},
             {"least_triangle_angle", report.least_triangle_angle},
             {"place_of_least_angle", place(report.place_of_least_angle)},
+            {"is_surface", report.is_surface},
             {"tetrahedra", report.tetrahedra},
             {"prisms", report.prisms},
             {"prism_ends", report.prism_ends},

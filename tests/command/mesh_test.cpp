@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 
 #include <fmt/format.h>
@@ -48,6 +51,7 @@ TEST(MeshCommand, WritesEveryFormatAndStatesTheQuality) {
   if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   const Packed result;
   for (const MeshFormat& format : mesh_formats()) {
+    if (format.is_surface) continue;
     const std::string file = result.folder / ("bed" + format.ending);
     const Ended ended =
         bernal({"mesh", result.out(), "--to", format.name, "-o", file, "--regions", "all", "--json"});
@@ -178,6 +182,59 @@ diameter = 0.24
     EXPECT_NEAR(volume, 0.8125, 1e-7);  // corners of the file are in single precision
     EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 0.01);
   }
+}
+
+/// How many triangles of an OBJ file have each edge, and the names of its groups.
+struct ReadSurface {
+  std::map<std::pair<int, int>, int> edges;
+  std::vector<std::string> groups;
+  explicit ReadSurface(const std::string& file) {
+    std::ifstream in(file);
+    for (std::string word; in >> word;) {
+      std::string name;
+      std::array<int, 3> c{};
+      if (word == "g" && in >> name) groups.push_back(name);
+      if (word == "f" && in >> c[0] >> c[1] >> c[2])
+        for (std::size_t k = 0; k < 3; ++k) ++edges[std::minmax(c[k], c[(k + 1) % 3])];
+    }
+  }
+};
+
+TEST(MeshCommand, SnappyNeedsNoMesherForItsClosedSurface) {
+  const Packed result;
+  const std::string folder = result.folder / "case";
+  const auto mesh = [&] {
+    const Ended ended = bernal({"mesh", result.out(), "--to", "snappy", "-o", folder + "/bed.foam",
+                                "--prisms", "2", "--mesh-size", "0.6", "--json"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  };
+  const auto report = mesh();
+  EXPECT_TRUE(report["is_surface"]);
+  EXPECT_EQ(report["tetrahedra"], 0);
+  EXPECT_GT(report["necks"], 0);
+  EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 0.01);
+  const ReadSurface surface(folder + "/constant/triSurface/bed.obj");
+  EXPECT_EQ(2 * surface.edges.size(), 3 * report["triangles"].get<std::size_t>());
+  for (const auto& [ends, triangles] : surface.edges) EXPECT_EQ(triangles, 2);
+  const std::string dictionary = text_of(folder + "/system/snappyHexMeshDict");
+  for (const std::string& group : surface.groups) {
+    EXPECT_NE(dictionary.find(group + " { name " + group + "; }"), std::string::npos) << group;
+    EXPECT_EQ(dictionary.find(group + " { nSurfaceLayers 2; }") != std::string::npos,
+              group == "surface_of_spheres" || group == "side")
+        << group;
+  }
+  EXPECT_EQ(surface.groups.size(), 5U);  // spheres, necks, side, floor, lid
+  // A case is the user's where it has been changed: what every program reads is left alone.
+  std::ofstream(folder + "/system/controlDict") << "mine";
+  mesh();
+  EXPECT_EQ(text_of(folder + "/system/controlDict"), "mine");
+  expect_refused_in_one_line(
+      bernal({"mesh", result.out(), "--to", "snappy", "-o", folder + "/bed.foam", "--regions", "all"}),
+      {"snappy", "--regions all"});
+  expect_refused_in_one_line(
+      bernal({"mesh", result.out(), "--to", "abaqus", "-o", folder + "/bed.inp", "--prisms", "2"}),
+      {"abaqus", "prisms"});
 }
 
 TEST(MeshCommand, RefusesWhatItCannotWrite) {

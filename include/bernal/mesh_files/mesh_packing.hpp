@@ -23,6 +23,7 @@ struct MeshFormat {
   std::string ending;     ///< of the file's name: ".msh"
   int largest_order = 2;  ///< of its elements
   bool has_prisms = false;
+  bool is_surface = false;  ///< its files hold triangles that another program meshes: TetGen is not needed
 };
 /// All of them, in the order in which users see them.
 std::vector<MeshFormat> mesh_formats();
@@ -79,8 +80,12 @@ struct BedMeshReport {
   std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
   std::size_t gaps_at_edges = 0;
-  double wall_deviation = 0;  ///< how far facets stand off the round walls of a solid of revolution
+  /// How far triangles of walls are off those of a CAD part, or off round walls of a solid of revolution.
+  double wall_deviation = 0;
 
+  /// Whether the triangles are all: for formats whose files another program makes the mesh from. Then there
+  /// are no tetrahedra, and volumes are those between the triangles.
+  bool is_surface = false;
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
   double least_angle = 0, largest_angle = 0;  ///< dihedral, in degrees
@@ -124,7 +129,7 @@ struct BedMeshReport {
   /// Whether the least SICN is as large as it is promised to be.
   static constexpr double promised_sicn = 0.1;
   double worst_sicn() const { return std::min(least_sicn, least_curved_sicn.value_or(1)); }
-  bool keeps_promise() const { return worst_sicn() >= promised_sicn; }
+  bool keeps_promise() const { return is_surface || worst_sicn() >= promised_sicn; }
 };
 
 struct MeshedPacking {
@@ -141,7 +146,8 @@ void require_mesh_format(const MeshFileOptions&, int dimension);
 /// tetrahedra, and prisms where these are asked for, that fit to each other, and writes them in the scene's
 /// unit to `file` and for some formats to others beside it. All appear whole, or none; existing files of
 /// these names are replaced. The surface is bernal's own, equal at opposite ends of periods; TetGen fills it,
-/// a program of its own.
+/// a program of its own. For formats that are surfaces nothing is filled: they hold triangles, of half the
+/// lengths that are asked of edges, and what the other program needs to mesh them.
 ///
 /// Throws as `require_mesh_format`; Error{bad_argument} for containers that cannot be meshed and where TetGen
 /// is not installed, with the remedy; Error{bad_mesh} where TetGen fails; Error{cannot_write} if a file of a
