@@ -22,7 +22,7 @@ void mesh_flat_walls(SurfaceDraft& draft, const Mesh& mesh) {
         },
         [&](const Vector<3>& q) { return Vector<3>(frame.origin + q[0] * frame.u + q[1] * frame.v); });
     for (const std::uint32_t e : edges[p]) part.add_chain(chains[e], false);
-    for (const std::uint32_t n : feet[p]) part.add_chain(draft.necks[n].rims[1], true);
+    for (const std::uint32_t n : feet[p]) part.add_chain(draft.necks[n].rim_points[1], true);
     part.mesh(draft.add_patch({SurfacePatch::Kind::wall, p, {0, SurfacePatch::nothing}}), false,
               [&](const Vector<3>& q) { return draft.sizes.on_wall(q, frame.outward, false); });
   }
