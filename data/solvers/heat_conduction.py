@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Effective conductivity of a periodic composite, by FEniCS, on a mesh of bernal's export to Gmsh.
+"""Effective conductivity of a periodic composite, by FEniCS, on a periodic mesh in Gmsh's format.
 
     data/solvers/heat_conduction.py MESH.msh [--ratio 10] [--degree 1] [--json]
 
-The mesh fills one period, a box; its physical volumes are the matrix, of conductivity 1, and spheres, of conductivity
-`ratio`: every volume whose name is not "matrix". The temperature is E·x + w with a unit gradient E along each axis in
+The mesh fills one period, a box: `bernal mesh RESULT --to gmsh --regions all`, or what the script of `bernal export --to
+gmsh` makes. Its physical volumes are the matrix, of conductivity 1, and spheres, of conductivity `ratio`: every volume
+whose name is neither "fluid" nor "matrix". The temperature is E·x + w with a unit gradient E along each axis in
 turn and w periodic: nodes of opposite faces, which the mesh matches, are one unknown. The effective conductivity is the
 mean of k |E + grad w|² and is, on any mesh, an upper bound of the exact one of that mesh's geometry. Beside it stand
 Maxwell's value and the bounds of Hashin and Shtrikman at the volume fraction of the mesh.
@@ -26,6 +27,7 @@ from dolfinx.io import gmshio
 from mpi4py import MPI
 
 
+MATRIX = ("fluid", "matrix")
 logging.getLogger().setLevel(logging.WARNING)  # FEniCS tells of every form that it compiles
 
 
@@ -35,12 +37,12 @@ def read(file, ratio):
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.open(file)
     names = {tag: gmsh.model.getPhysicalName(3, tag) for dimension, tag in gmsh.model.getPhysicalGroups(3)}
-    if "matrix" not in names.values() or len(names) < 2:
-        sys.exit(f"{file}: has no physical volume \"matrix\" beside those of spheres, but {list(names.values())}")
+    if not any(name in MATRIX for name in names.values()) or len(names) < 2:
+        sys.exit(f"{file}: has no physical volume \"fluid\" or \"matrix\" beside those of spheres, but {list(names.values())}")
     mesh, cells, _ = gmshio.model_to_mesh(gmsh.model, MPI.COMM_SELF, 0, gdim=3)
     gmsh.finalize()
     conductivity = fem.Function(fem.FunctionSpace(mesh, ("DG", 0)))
-    conductivity.x.array[cells.indices] = [1 if names[tag] == "matrix" else ratio for tag in cells.values]
+    conductivity.x.array[cells.indices] = [1 if names[tag] in MATRIX else ratio for tag in cells.values]
     return mesh, conductivity
 
 
