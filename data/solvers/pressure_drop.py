@@ -45,9 +45,9 @@ writeControl timeStep; writeInterval {every}; purgeWrite 2; writePrecision 12; w
 SCHEMES = """ddtSchemes { default steadyState; }
 gradSchemes { default Gauss pointLinear; }
 divSchemes { default none; div(phi,U) bounded Gauss linearUpwind grad(U); div((nuEff*dev2(T(grad(U))))) Gauss linear; }
-laplacianSchemes { default Gauss linear corrected; }
+laplacianSchemes { default Gauss linear limited corrected 0.5; }
 interpolationSchemes { default linear; }
-snGradSchemes { default corrected; }
+snGradSchemes { default limited corrected 0.5; }
 """
 SOLUTION = """solvers
 {
@@ -55,7 +55,7 @@ SOLUTION = """solvers
     U { solver smoothSolver; smoother symGaussSeidel; tolerance 1e-10; relTol 0.1; }
 }
 SIMPLE { consistent yes; nNonOrthogonalCorrectors 0; pRefCell 0; pRefValue 0; }
-relaxationFactors { fields { p 1; } equations { U 0.9; } }
+relaxationFactors { fields { p 0.8; } equations { U 0.8; } }
 """
 FORCE = """drive
 {{
