@@ -8,6 +8,6 @@ extern const std::string_view gmsh_py, liggghts_in, openmc_build_py, openmc_py, 
     povray_pov;
 extern const std::string_view threemf_content_types_xml, threemf_rels_xml;
 extern const std::string_view snappy_Allmesh, snappy_blockMeshDict, snappy_controlDict, snappy_fvSchemes,
-    snappy_fvSolution, snappy_snappyHexMeshDict, snappy_surfaceFeatureExtractDict;
+    snappy_fvSolution, snappy_snappyHexMeshDict;
 
 }  // namespace bernal

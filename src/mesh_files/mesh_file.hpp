@@ -53,6 +53,9 @@ struct MeshToWrite {
   const std::filesystem::path& name;  ///< of the file, in the folder
   std::string_view title;             ///< "bernal 0.2.0 (…): mesh of 1,000 spheres", in ASCII
   std::string_view unit;
+  double metres;         ///< in one unit
+  const Solids& solids;  ///< that the mesh is of
+  const MeshFileOptions& options;
 };
 
 /// An entry of the list of formats.
@@ -69,6 +72,12 @@ MeshWriter gmsh_of_mesh();
 MeshWriter abaqus_of_mesh();
 MeshWriter openfoam_of_mesh();
 MeshWriter vtu_of_mesh();
+MeshWriter snappy_of_mesh();
+
+/// What OpenFOAM calls a patch of this name: "patch" where fluid enters or leaves, else "wall".
+std::string type_of_patch(std::string_view name);
+/// What programs of OpenFOAM read before the mesh, where the case does not have it: it is the user's then.
+void write_system_of_openfoam(const MeshToWrite&, StagedFolder&);
 
 /// Throws Error{bad_argument} where a number of the options is not in the range of its key.
 void require_in_range(const MeshKey&, const MeshFileOptions&);

@@ -66,6 +66,12 @@ const std::vector<MeshKey>& mesh_keys() {
        &Of::gap_edge, 0.5, 50},
       {"layer_size", "Edges on spheres with thin layers, in thicknesses of these; 6 if absent", "WIDTHS",
        &Of::layer_edge, 0.5, 50},
+      {"prisms", "Layers of prisms in the fluid on spheres and walls where there is room; none if absent",
+       "N", &Of::prisms, 0, 20},
+      {"prism_height", "Of all layers of prisms together, in radii; 0.1 if absent", "SHARE",
+       &Of::prism_height, 0.005, 0.4},
+      {"prism_growth", "Height of a layer of prisms over that of the one below; 1.2 if absent", "RATIO",
+       &Of::prism_growth, 1, 3},
       {.name = "regions",
        .what = "What is meshed: the fluid, or the spheres too; fluid if absent",
        .placeholder = "WORD",
@@ -73,8 +79,10 @@ const std::vector<MeshKey>& mesh_keys() {
        .words = {"fluid", "all"}},
       {"cut",
        "The part that is meshed, in the scene's unit: \"x = 1..4, y = 1..4, z = 0..5\"; its faces cut "
-       "spheres",
+       "spheres. With contact gap or shrink",
        "BOX", &Of::cut},
+      {"unit", "Of lengths in the files: m, mm, …; the scene's if absent, and always m for snappy", "UNIT",
+       &Of::unit},
       {"order", "2: elements with middles of edges, on the true spheres; 1 if absent", "N", &Of::order, 1, 2},
   };
   return all;

@@ -27,7 +27,7 @@ namespace {
 
 const std::vector<MeshWriter>& mesh_writers() {
   static const std::vector<MeshWriter> all = {gmsh_of_mesh(), abaqus_of_mesh(), openfoam_of_mesh(),
-                                              vtu_of_mesh()};
+                                              snappy_of_mesh(), vtu_of_mesh()};
   return all;
 }
 
@@ -54,6 +54,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
   report.contact_area = stated.contact_area;
+  report.wall_deviation += stated.wall_deviation;
 }
 
 void take_mesh(const VolumeMesh& mesh, const MeshGroups& groups, BedMeshReport& report) {
@@ -106,7 +107,12 @@ Bounds<3> box_in(std::string_view text, Unit unit) {
   std::array<bool, 3> has{};
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t comma = std::min(text.find(',', from), text.size());
-    const LowerPart slab = slab_in(text.substr(from, comma - from), unit);
+    LowerPart slab;
+    try {
+      slab = slab_in(text.substr(from, comma - from), unit);
+    } catch (const Error&) {
+      break;
+    }
     from = comma + 1;
     int axis = 0;
     slab.direction.cwiseAbs().maxCoeff(&axis);
@@ -150,6 +156,19 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
   return {std::move(part.solids), std::move(part.of_packing)};
 }
 
+/// What the treatment of contacts made of the spheres.
+void take_spheres(const Packing& packing, const Solids& solids, const std::vector<std::uint32_t>& of_packing,
+                  BedMeshReport& report) {
+  for (std::size_t i = 0; i < solids.spheres.size(); ++i) {
+    const double packed = packing.spheres.r[of_packing.empty() ? i : of_packing[i]];
+    if (!(solids.spheres.r[i] < packed)) continue;
+    ++report.shrunk_spheres;
+    report.largest_shrinking = std::max(report.largest_shrinking, 1 - solids.spheres.r[i] / packed);
+  }
+  if (of_packing.empty())
+    report.packed_porosity = 1 - volume_of_balls(packing.spheres) / report.domain_volume;
+}
+
 /// Lets patches and regions name spheres by their numbers in the packing.
 void name_spheres(ConformingSurface& surface, const std::vector<std::uint32_t>& of_packing) {
   if (of_packing.empty()) return;
@@ -161,10 +180,39 @@ void name_spheres(ConformingSurface& surface, const std::vector<std::uint32_t>& 
     if (region.sphere) region.sphere = of_packing[*region.sphere];
 }
 
-/// The mesh, its names, and what it is like.
+/// The triangles of a surface as a mesh without tetrahedra.
+VolumeMesh without_filling(ConformingSurface&& surface) {
+  return {.vertices = std::move(surface.vertices),
+          .tetrahedra = {},
+          .region = {},
+          .triangles = std::move(surface.triangles),
+          .patch = std::move(surface.patch),
+          .patches = std::move(surface.patches),
+          .regions = std::move(surface.regions),
+          .periodic = std::move(surface.periodic)};
+}
+
+/// Sizes of triangles: those that another program makes cells from are finer than these, but in narrow gaps
+/// no shorter for that.
+SurfaceMeshOptions sizes_of(const MeshFileOptions& options, bool is_surface) {
+  constexpr double finer = 0.5, any_gap = 100;
+  SurfaceMeshOptions sizes{.sphere_edge = options.sphere_edge,
+                           .neck_edge = options.neck_edge,
+                           .per_gap = options.gap_edge,
+                           .solids = options.solids,
+                           .per_layer = options.layer_edge};
+  if (!is_surface) return sizes;
+  sizes.sphere_edge *= finer;
+  sizes.neck_edge *= finer;
+  sizes.per_gap = any_gap;
+  return sizes;
+}
+
+/// The mesh, its names, and what it is of.
 struct NamedMesh {
   VolumeMesh mesh;
   MeshGroups groups;
+  Solids solids;
 };
 NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
                   BedMeshReport& report) {
@@ -173,22 +221,25 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.domain_volume = volume_of(packing.domain);
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
-  const auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
-  ConformingSurface surface = conforming_surface(solids,
-                                                 {.sphere_edge = options.sphere_edge,
-                                                  .neck_edge = options.neck_edge,
-                                                  .per_gap = options.gap_edge,
-                                                  .solids = options.solids,
-                                                  .per_layer = options.layer_edge},
-                                                 monitor);
+  auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
+  take_spheres(packing, solids, of_packing, report);
+  const MeshWriter& writer = mesh_writer_of(options.format);
+  report.is_surface = writer.format.is_surface;
+  ConformingSurface surface = conforming_surface(solids, sizes_of(options, report.is_surface), monitor);
   name_spheres(surface, of_packing);
   take_surface(surface, report);
   // The surface states what is between its own walls.
   report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
   report.parts.push_back({"surface", watch.seconds()});
+  if (report.is_surface) {
+    report.meshed_porosity = surface.statement.meshed_fluid_volume / report.domain_volume;
+    report.groups.push_back({"fluid", surface.statement.meshed_fluid_volume, surface.statement.fluid_volume});
+    VolumeMesh mesh = without_filling(std::move(surface));
+    MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
+    return {std::move(mesh), std::move(groups), std::move(solids)};
+  }
   FillReport filled;
-  VolumeMesh mesh = fill_with_layers(surface, {.for_gradients = mesh_writer_of(options.format).for_gradients},
-                                     filled, monitor);
+  VolumeMesh mesh = fill_with_layers(surface, {.for_gradients = writer.for_gradients}, filled, monitor);
   report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
                           filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
@@ -201,7 +252,26 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   }
   MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
   take_mesh(mesh, groups, report);
-  return {std::move(mesh), std::move(groups)};
+  return {std::move(mesh), std::move(groups), std::move(solids)};
+}
+
+/// A folder that is named for a case of OpenFOAM stands for the file in it that has its name.
+fs::path file_named(const MeshFormat& format, const fs::path& named) {
+  if (format.ending == ".foam" && (fs::is_directory(named) || !named.has_extension())) {
+    const fs::path folder = named.has_filename() ? named : named.parent_path();
+    return folder / (fs::absolute(folder).lexically_normal().filename().string() + format.ending);
+  }
+  for (const MeshFormat& other : mesh_formats())
+    if (named.extension() == other.ending && other.ending != format.ending)
+      refuse(fmt::format("files of {} end in {}, those of {} in {}", other.name, other.ending, format.name,
+                         format.ending));
+  return named;
+}
+
+/// Lengths in another unit.
+void scale(VolumeMesh& mesh, double factor) {
+  for (auto* points : {&mesh.vertices, &mesh.middles})
+    for (Vector<3>& p : *points) p *= factor;
 }
 
 std::vector<std::string> names_of_files(const MeshWriter& writer, const fs::path& name) {
@@ -225,6 +295,16 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   for (const MeshKey& key : mesh_keys()) require_in_range(key, options);
   if (options.order > format.largest_order)
     refuse(fmt::format("the format {} has no elements of second order", format.name));
+  if (options.prisms > 0 && !format.has_prisms)
+    refuse(fmt::format("prisms are not written in the format {}", format.name));
+  if (!options.unit.empty()) {
+    unit_named(options.unit);
+    if (format.is_surface)
+      refuse(fmt::format("the format {} has lengths in m; leave out ‹unit›", format.name));
+  }
+  if (format.is_surface && options.solids)
+    refuse(
+        fmt::format("the format {} is for a mesh of the fluid alone; leave out ‹regions=all›", format.name));
 }
 
 BedMeshReport measure_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor) {
@@ -238,11 +318,13 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
                            const Monitor& monitor) {
   require_mesh_format(options, packing.spheres.dimension());
   const MeshWriter& writer = mesh_writer_of(options.format);
-  const fs::path name = named.filename(), folder = folder_of(named);
+  const fs::path file = file_named(writer.format, named), name = file.filename(), folder = folder_of(file);
   require_free(folder, names_of_files(writer, name));
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;
-  const auto [mesh, groups] = mesh_of(packing, options, monitor, report);
+  auto [mesh, groups, solids] = mesh_of(packing, options, monitor, report);
+  const Unit unit = options.unit.empty() ? packing.scene.unit : unit_named(options.unit);
+  if (unit != packing.scene.unit) scale(mesh, conversion_factor(packing.scene.unit, unit));
   const Stopwatch writing;
   monitor.report({"write", -1, options.format});
   StagedFolder staged(folder);
@@ -253,7 +335,10 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
                               .folder = folder,
                               .name = name,
                               .title = title,
-                              .unit = name_of(packing.scene.unit)},
+                              .unit = name_of(unit),
+                              .metres = metres_per(packing.scene.unit),
+                              .solids = solids,
+                              .options = options},
                              staged);
   meshed.files = staged.publish();
   for (fs::path& path : meshed.files) path = path.lexically_normal();

@@ -1,8 +1,7 @@
-#include <utility>
-
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "formats/templates.hpp"
+#include "formats/snappy_case.hpp"
 #include "formats/text_file.hpp"
 #include "mesh_files/mesh_file.hpp"
 #include "mesh_files/poly_mesh.hpp"
@@ -63,14 +62,6 @@ void write_zones(const MeshToWrite& file, StagedFolder& staged) {
   });
 }
 
-/// What programs of OpenFOAM read before the mesh, where the case does not have it: it is the user's then.
-void write_system(const MeshToWrite& file, StagedFolder& staged) {
-  for (const auto& [name, text] :
-       {std::pair("system/controlDict", snappy_controlDict), std::pair("system/fvSchemes", snappy_fvSchemes),
-        std::pair("system/fvSolution", snappy_fvSolution)})
-    if (!stands(file.folder / name)) staged.write(name, text);
-}
-
 std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& staged) {
   const VolumeMesh& mesh = file.mesh;
   const PolyMesh poly = poly_mesh_of(mesh, file.groups);
@@ -87,14 +78,27 @@ std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& stage
   write_list(file, staged, "labelList", "neighbour", poly.neighbour, note, add_label);
   write_boundary(file, poly, staged);
   write_zones(file, staged);
-  write_system(file, staged);
+  write_system_of_openfoam(file, staged);
   staged.write(file.name.string(), "");
+  std::vector<std::string> patches;
+  for (const PolyMesh::Patch& patch : poly.patches)
+    patches.push_back(fmt::format("{} ({})", patch.name, patch.type));
   return fmt::format(
-      "constant/polyMesh with {} faces, {} of them inside, {} patches and {} cell zones; lengths in {}",
-      poly.faces.size(), poly.neighbour.size(), poly.patches.size(), file.groups.volumes.size(), file.unit);
+      "constant/polyMesh with {} faces, {} of them inside, and {} cell zones; patches {}; lengths in {}{}",
+      poly.faces.size(), poly.neighbour.size(), file.groups.volumes.size(), fmt::join(patches, ", "),
+      file.unit, file.unit == "m" ? "" : ", which OpenFOAM takes for m: ‹unit=m› converts");
 }
 
 }  // namespace
+
+std::string type_of_patch(std::string_view name) {
+  return name == "floor" || name == "lid" ? "patch" : "wall";
+}
+
+void write_system_of_openfoam(const MeshToWrite& file, StagedFolder& staged) {
+  for (const auto& [name, text] : system_files_of_openfoam())
+    if (!stands(file.folder / name)) staged.write(std::string(name), text);
+}
 
 MeshWriter openfoam_of_mesh() {
   return {

@@ -153,7 +153,7 @@ class NeckTraces {
     };
     trace.ids.push_back(trace.is_closed ? draft_.vertex_at(curve.at(0), edge) : vertex_near(from));
     const int count =
-        std::max(trace.is_closed ? 6 : 1, static_cast<int>(std::nearbyint(length.back() / edge)));
+        std::max(trace.is_closed ? 6 : 1, static_cast<int>(std::ceil(length.back() / edge)));
     std::size_t s = 0;
     for (int k = 1; k < count; ++k) {
       const double wanted = length.back() * k / count;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/parallel.hpp"
 #include "meshes/planar_part.hpp"
@@ -170,30 +171,77 @@ void mesh_whole_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t p
   }
 }
 
-/// Triangles of what is left of a neck's side in the domain. It is mapped to the plane by angle and the
-/// exponential of the height, which keeps angles.
+/// The middle of the widest range of angles that no arc has, if there is one. An arc: where it begins and how
+/// far it goes, up to pi either way.
+std::optional<double> angle_without(std::vector<std::array<double, 2>> arcs) {
+  constexpr double turn = 2 * std::numbers::pi;
+  constexpr double least_range = 1e-3;
+  for (auto& [from, length] : arcs) {
+    if (length < 0) from += length;
+    length = std::abs(length);
+    from -= turn * std::floor(from / turn);
+  }
+  std::ranges::sort(arcs);
+  double reached = 0, widest = least_range;
+  for (const auto& [from, length] : arcs) reached = std::max(reached, from + length - turn);
+  arcs.push_back({arcs.front()[0] + turn, 0});
+  std::optional<double> found;
+  for (const auto& [from, length] : arcs) {
+    if (from - reached > widest && reached > 0) {
+      widest = from - reached;
+      found = 0.5 * (from + reached);
+    }
+    reached = std::max(reached, from + length);
+  }
+  return found;
+}
+
+/// Triangles of what is left of a neck's side in the domain, which is unrolled where that does not go all the
+/// way around, so that edges of its boundary are as straight in the plane as they are. Else it is mapped by
+/// angle and the exponential of the height, which keeps angles.
 void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t patch) {
   const double a = neck.radius, middle = 0.5 * (neck.begin + neck.end);
   const Vector<3> around = neck.around();
-  PlanarPart part(
-      draft,
-      [&](const Vector<3>& p) {
-        const Vector<3> d = p - neck.center, beside = d - d.dot(neck.axis) * neck.axis;
-        const double r = a * std::exp((d.dot(neck.axis) - middle) / a) / beside.norm();
-        return Vector<3>(r * beside.dot(neck.across), r * beside.dot(around), 0);
-      },
-      [&](const Vector<3>& p) {
-        const double r = p.norm();
-        return Vector<3>(neck.center + (middle + a * std::log(r / a)) * neck.axis +
-                         a / r * (p[0] * neck.across + p[1] * around));
-      });
+  std::vector<std::pair<std::vector<std::uint32_t>, bool>> chains;
   for (std::size_t e = 0; e < 2; ++e) {
     if (neck.pieces[e] == Delaunay::none) continue;
     const Circle& circle = draft.pieces[neck.pieces[e]].circles[neck.circles[e]];
-    for (const auto& chain : circle.chains) part.add_chain(chain, circle.is_whole);
+    for (const auto& chain : circle.chains) chains.emplace_back(chain, circle.is_whole);
   }
-  for (const NeckTrace& trace : neck.traces) part.add_chain(trace.ids, trace.is_closed);
-  if (!part.empty()) part.mesh(patch, true, [&](const Vector<3>&) { return neck.edge; });
+  for (const NeckTrace& trace : neck.traces) chains.emplace_back(trace.ids, trace.is_closed);
+  if (chains.empty()) return;
+
+  const auto angle_of = [&](const Vector<3>& p) {
+    return std::atan2((p - neck.center).dot(around), (p - neck.center).dot(neck.across));
+  };
+  const auto height_of = [&](const Vector<3>& p) { return (p - neck.center).dot(neck.axis) - middle; };
+  const auto at = [&](double height, double angle) {
+    return Vector<3>(neck.center + (middle + height) * neck.axis +
+                     a * (std::cos(angle) * neck.across + std::sin(angle) * around));
+  };
+  std::vector<std::array<double, 2>> arcs;
+  for (const auto& [chain, is_closed] : chains)
+    for (std::size_t k = 0; k + (is_closed ? 0 : 1) < chain.size(); ++k) {
+      const double from = angle_of(draft.made.vertices[chain[k]]);
+      const double to = angle_of(draft.made.vertices[chain[(k + 1) % chain.size()]]);
+      arcs.push_back({from, std::remainder(to - from, 2 * std::numbers::pi)});
+    }
+  const std::optional<double> cut = angle_without(std::move(arcs));
+  const auto flat = [&](const Vector<3>& p) {
+    if (!cut) {
+      const double r = a * std::exp(height_of(p) / a);
+      return Vector<3>(r * std::cos(angle_of(p)), r * std::sin(angle_of(p)), 0);
+    }
+    const double turned = std::remainder(angle_of(p) - *cut - std::numbers::pi, 2 * std::numbers::pi);
+    return Vector<3>(height_of(p), a * turned, 0);
+  };
+  const auto back = [&](const Vector<3>& p) {
+    return cut ? at(p[0], p[1] / a + *cut + std::numbers::pi)
+               : at(a * std::log(p.norm() / a), std::atan2(p[1], p[0]));
+  };
+  PlanarPart part(draft, flat, back);
+  for (const auto& [chain, is_closed] : chains) part.add_chain(chain, is_closed);
+  part.mesh(patch, true, [&](const Vector<3>&) { return neck.edge; });
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Meshes of bernal in other programs: tests/clients/with_meshes.py [BERNAL]
 
-Meshes a bed of bridged spheres in a box and one in a cylinder. OpenFOAM's checkMesh finds the fluid good; CalculiX solves
+Meshes a bed of bridged spheres in a box and one in a cylinder. OpenFOAM's checkMesh finds the fluid good, and that of
+snappyHexMesh, whose case bernal writes, with layers in a cylinder and in a bed of two periods; CalculiX solves
 heat conduction through fluid, spheres and bridges at the first try, and the conductance lies between the bounds that hold
 for any arrangement of these volumes (Wiener 1912); meshio reads volumes and groups as bernal states them. Each is left
-out with a word where it is not installed. Debian: tetgen openfoam calculix-ccx python3-meshio. Takes half a minute.
+out with a word where it is not installed. Debian: tetgen openfoam calculix-ccx python3-meshio. Takes some minutes.
 """
 import os
 
@@ -33,6 +34,25 @@ count = 60
 radius = 0.5
 [[stage]]
 do = "settle"
+"""
+FEW = """unit = "mm"
+[container]
+kind = "cylinder"
+radius = 1.2
+height = 2.5
+[spheres]
+count = 5
+diameter = 1
+"""
+SLAB = """unit = "mm"
+[container]
+kind = "periodic"
+size = [2.5, 2.5, 2.5]
+walls = [2]
+[spheres]
+count = 8
+diameter = 1
+bed = "poured"
 """
 CONTROL = """FoamFile { version 2.0; format ascii; class dictionary; object controlDict; }
 application simpleFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1;
@@ -78,6 +98,19 @@ def with_openfoam(result, name):
     expect(cells == [str(report["tetrahedra"])], f"{name}: it counts {cells} cells")
 
 
+def with_snappy(result, name, *options):
+    text = run(BERNAL, "mesh", "result", "--to", "snappy", "-o", "snappy/bed.foam", "--json", *options, folder=result.folder)
+    report = json.loads(text[text.index("{"):text.rindex("}") + 1])
+    said = run(result.folder / "snappy" / "Allmesh", folder=result.folder, seconds=1800)
+    said = said[said.rindex("Mesh stats"):]
+    expect("Mesh OK" in said, f"snappyHexMesh, {name}: checkMesh finds the mesh good")
+    volume = float(said[said.index("Total volume = "):].split()[3].rstrip("."))
+    fluid = report["groups"][0]["volume"] * 1e-9  # in m
+    expect(0.95 * fluid < volume < 1.01 * fluid, f"snappyHexMesh, {name}: {volume:.5g} m^3 of {fluid:.5g}")
+    for patch in ("surface_of_spheres", "necks"):
+        expect(patch in (result.folder / "snappy/constant/polyMesh/boundary").read_text(), f"{name}: it has {patch}")
+
+
 def with_calculix(result):
     report = mesh(result, "abaqus", "bed.inp", "--regions", "all")
     (result.folder / "heat.inp").write_text(HEAT)
@@ -116,6 +149,9 @@ with tempfile.TemporaryDirectory() as made:
     if find_program("checkMesh", "openfoam"):
         with_openfoam(box, "box")
         with_openfoam(column, "column")
+    if find_program("snappyHexMesh", "openfoam"):
+        with_snappy(Result(Path(made) / "few", FEW), "cylinder", "--prisms", "2")
+        with_snappy(Result(Path(made) / "slab", SLAB), "periods")
     if find_program("ccx", "calculix-ccx"):
         with_calculix(box)
     meshio, numpy = find_module("meshio", "python3-meshio"), find_module("numpy", "python3-numpy")

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "meshes/surface_draft.hpp"
 #include "support/surface_oracle.hpp"
 
 namespace bernal {
@@ -96,6 +97,48 @@ TEST(ConformingSurface, EndsOfPeriodsCutBridges) {
         }
         error_before = error;
       }
+    }
+}
+
+/// An end nearly square to a bridge leaves a thin part of its side, along whose boundary chords are as far
+/// from the cylinder as the boundary's two sides are from each other.
+TEST(ConformingSurface, ThinSidesOfBridgesAreMeshed) {
+  Spheres<dynamic> one(3);
+  one.push_back(Vector<3>(1, 1, 1), 0.5);
+  const Solids solids = solids_in(one, periodic_box(Vector<3>(2, 2, 2)), ContactTreatment::bridge);
+  const SurfaceMeshOptions options;
+  for (const double first : {0.0, 2.0, 5.0})  // where it begins around the axis
+    for (const double height : {0.02, 0.004, 0.0004}) {
+      SurfaceDraft draft(solids, options);
+      DraftNeck neck{.is_cut = true, .radius = 0.1, .begin = 0, .end = height, .edge = 0.12};
+      NeckTrace boundary{.is_closed = true};
+      double area = 0, x_before = 0, y_before = 0;  // of the boundary, unrolled
+      const auto add = [&](double angle, double along) {
+        boundary.ids.push_back(draft.add_vertex(
+            Vector<3>(0.1 * std::cos(first + angle), 0.1 * std::sin(first + angle), along), neck.edge));
+        area += 0.5 * (x_before * along - 0.1 * angle * y_before);
+        x_before = 0.1 * angle;
+        y_before = along;
+      };
+      for (const double angle : {0.0, 0.64, 1.28, 1.92, 2.56, 3.2}) add(angle, 0);
+      for (const double angle : {2.2, 1.6, 1.0}) add(angle, height);
+      neck.traces = {boundary};
+      draft.necks = {neck};
+      mesh_necks(draft);
+      ASSERT_GE(draft.made.triangles.size(), 7u);
+      double meshed = 0;
+      for (const FaceCorners& t : draft.made.triangles) {
+        std::array<Vector<3>, 3> flat;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vector<3>& p = draft.made.vertices[t[k]];
+          const double angle = std::atan2(p[1], p[0]) - first;
+          flat[k] = Vector<3>(0.1 * (angle - 2 * pi * std::floor(angle / (2 * pi) + 1e-6)), p[2], 0);
+        }
+        const double part = 0.5 * (flat[1] - flat[0]).cross(flat[2] - flat[0])[2];
+        EXPECT_GT(part, 0) << "normals point into the fluid";
+        meshed += part;
+      }
+      EXPECT_NEAR(meshed, std::abs(area), 1e-9 * std::abs(area));
     }
 }
 

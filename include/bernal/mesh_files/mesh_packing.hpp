@@ -22,6 +22,8 @@ struct MeshFormat {
   std::string what;       ///< for whom, and what the files hold
   std::string ending;     ///< of the file's name: ".msh"
   int largest_order = 2;  ///< of its elements
+  bool has_prisms = false;
+  bool is_surface = false;  ///< its files hold triangles that another program meshes: TetGen is not needed
 };
 /// All of them, in the order in which users see them.
 std::vector<MeshFormat> mesh_formats();
@@ -37,8 +39,12 @@ struct MeshFileOptions {
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
   double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
+  std::string unit = {};       ///< of the lengths in the files; the scene's if empty
   std::string cut = {};        ///< the box that is meshed: "x = 1..4, y = 1..4, z = 0..5"; all if empty
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
+  int prisms = 0;              ///< layers of prisms in the fluid, on spheres and walls where there is room
+  double prism_height = 0.1;   ///< of all layers together, on walls in mean radii
+  double prism_growth = 1.2;   ///< height of a layer over that of the one nearer to the surface
   int order = 1;               ///< 2: with middles of edges, on the true spheres
 };
 
@@ -75,8 +81,14 @@ struct BedMeshReport {
   std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
   std::size_t gaps_at_edges = 0;
-  double wall_deviation = 0;  ///< how far facets stand off the round walls of a solid of revolution
+  /// How far triangles of walls are off those of a CAD part, or off round walls of a solid of revolution.
+  double wall_deviation = 0;
+  std::size_t shrunk_spheres = 0;  ///< that are smaller than in the packing, for gaps
+  double largest_shrinking = 0;    ///< of a radius, over the radius
 
+  /// Whether the triangles are all: for formats whose files another program makes the mesh from. Then there
+  /// are no tetrahedra, and volumes are those between the triangles.
+  bool is_surface = false;
   std::size_t tetrahedra = 0, nodes = 0;
   double least_sicn = 0, mean_sicn = 0;       ///< Gmsh's signed inverse condition number, of straight edges
   double least_angle = 0, largest_angle = 0;  ///< dihedral, in degrees
@@ -93,6 +105,7 @@ struct BedMeshReport {
 
   double domain_volume = 0;
   double porosity = 0;         ///< in closed form, contacts as they were treated
+  std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed; nothing for a part
   double meshed_porosity = 0;  ///< of the mesh
   double contact_area = 0;     ///< cross-sections of necks, flat faces of caps
   struct Group {
@@ -113,7 +126,7 @@ struct BedMeshReport {
   /// Whether the least SICN is as large as it is promised to be.
   static constexpr double promised_sicn = 0.1;
   double worst_sicn() const { return std::min(least_sicn, least_curved_sicn.value_or(1)); }
-  bool keeps_promise() const { return worst_sicn() >= promised_sicn; }
+  bool keeps_promise() const { return is_surface || worst_sicn() >= promised_sicn; }
 };
 
 struct MeshedPacking {
@@ -129,7 +142,9 @@ void require_mesh_format(const MeshFileOptions&, int dimension);
 /// Meshes the space between the spheres of a packing, and the spheres where that is asked for, by
 /// tetrahedra that fit to each other, and writes them in the scene's unit to `file` and for some formats to
 /// others beside it. All appear whole, or none; existing files of these names are replaced. The surface is
-/// bernal's own, equal at opposite ends of periods; TetGen fills it, a program of its own.
+/// bernal's own, equal at opposite ends of periods; TetGen fills it, a program of its own. For formats that
+/// are surfaces nothing is filled: they hold triangles, of half the lengths that are asked of edges, and what
+/// the other program needs to mesh them.
 ///
 /// Throws as `require_mesh_format`; Error{bad_argument} for containers that cannot be meshed and where TetGen
 /// is not installed, with the remedy; Error{bad_mesh} where TetGen fails; Error{cannot_write} if a file of a

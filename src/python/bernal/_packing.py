@@ -331,9 +331,10 @@ class Packing:
 
     def mesh(self, format: str, file: str | os.PathLike[str], *, progress: Progress = None, **keys: Any) -> Written:
         """Meshes the space between the spheres, and the spheres where that is asked for, as `bernal mesh` does:
-        `packing.mesh("openfoam", "case/bed.foam", mesh_size=0.25)`. The program tetgen has to be installed.
+        `packing.mesh("openfoam", "case/bed.foam", mesh_size=0.25)`. The program tetgen has to be installed, but not for
+        "snappy".
 
-        format : "gmsh", "abaqus", "openfoam" or "vtu".
+        format : "gmsh", "abaqus", "openfoam", "snappy" or "vtu".
         Returns files, note and what `bernal mesh --json` prints: tetrahedra, least_sicn, worst, porosity,
         meshed_porosity, groups, parts, …. Raises InputError for what cannot be meshed, and WriteError. A least SICN
         below promised_sicn is no error.
