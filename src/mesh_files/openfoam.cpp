@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "formats/snappy_case.hpp"
 #include "formats/text_file.hpp"
@@ -109,10 +110,13 @@ std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& stage
   write_face_zones(file, poly, staged);
   write_system_of_openfoam(file, staged);
   staged.write(file.name.string(), "");
+  std::vector<std::string> patches;
+  for (const PolyMesh::Patch& patch : poly.patches)
+    patches.push_back(fmt::format("{} ({})", patch.name, patch.type));
   return fmt::format(
-      "constant/polyMesh with {} faces, {} of them inside, {} patches and {} cell zones; lengths in {}{}",
-      poly.faces.size(), poly.neighbour.size(), poly.patches.size(), file.groups.volumes.size(), file.unit,
-      file.metres == 1 ? "" : fmt::format(", for m: transformPoints -scale \"({0} {0} {0})\"", file.metres));
+      "constant/polyMesh with {} faces, {} of them inside, and {} cell zones; patches {}; lengths in {}{}",
+      poly.faces.size(), poly.neighbour.size(), file.groups.volumes.size(), fmt::join(patches, ", "),
+      file.unit, file.unit == "m" ? "" : ", which OpenFOAM takes for m: ‹unit=m› converts");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct SurfacePatch {
     neck,      ///< index: its place in `ConformingSurface::necks`, the same for images
     cut_face,  ///< the flat face of a cap, or where a neck begins inside a sphere; index: the sphere's
     wall,  ///< index: 0 to 5 of a box as Cut::face; of a cylinder 0 its side, 1 its floor, 2 its lid; 0 of a
-           ///< sphere; of a mesh its planar part
+           ///< sphere; of a mesh its planar part, or the first of those triangulated as one
     period_end,  ///< index: Cut::face
     layer,       ///< the sphere on which a layer begins that is not the innermost; index: the sphere's
   };
@@ -71,6 +71,7 @@ struct SurfaceStatement {
   double fluid_volume = 0;  ///< in closed form; where caps of a sphere meet, what they share is counted twice
   double meshed_fluid_volume = 0;  ///< between the triangles
   double contact_area = 0;         ///< cross-sections of necks, flat faces of caps
+  double wall_deviation = 0;       ///< how far triangles of walls of a mesh are off it, at most
 };
 
 /// The triangles that bound the fluid and, where asked for, the solids of a bed: every patch once, also where
@@ -105,8 +106,10 @@ struct SurfaceMeshOptions {
 /// of periods with the same points. Vertices lie on the true surfaces to rounding, so triangles of spheres
 /// that do not overlap do not cross. The same for any number of threads.
 ///
-/// Walls of a mesh are divided into their planar parts, see `PlanarWalls`, of which each is triangulated
-/// anew: the volume within them stays what it is.
+/// Walls of a mesh are divided into their planar parts, see `PlanarWalls`, and those that are facets of a
+/// curved wall are joined, see `SmoothWalls`; each is triangulated anew. Corners lie on the mesh, and
+/// triangles across facets stand off it by at most some 2 % of the smallest radius, see
+/// `SurfaceStatement::wall_deviation`; they stay clear of spheres, and no two cross, or facets are kept.
 ///
 /// Precondition: solids of three dimensions in a box, a cylinder, both periodic or not, a sphere, or a mesh
 /// without an inset in which bridges have room, see `solids_in_walls`. Throws

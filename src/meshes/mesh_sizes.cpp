@@ -9,6 +9,12 @@
 namespace bernal {
 namespace {
 
+/// Of edges on walls beside the largest spheres: flat walls far from all spheres have up to so many times as
+/// long ones. On walls of a mesh that stand for curved ones, `SmoothWalls` limits them.
+double most_far_away(const Domain& domain) {
+  return std::holds_alternative<Box>(domain) || std::holds_alternative<Mesh>(domain) ? 8 : 1;
+}
+
 double largest_of(const std::vector<double>& r) { return r.empty() ? 1 : std::ranges::max(r); }
 
 }  // namespace
@@ -123,7 +129,19 @@ double MeshSizes::on_sphere(const Vector<3>& p, const Vector<3>& center, double 
 }
 
 double MeshSizes::on_wall(const Vector<3>& p, const Vector<3>& normal, bool is_end) const {
-  const double most = 2 * options_.sphere_edge * largest_;
+  // A sphere that is out of reach asks for no shorter edges than the limit.
+  double limit = 2 * options_.sphere_edge * largest_;
+  const double most = most_far_away(solids_.domain) * limit;
+  double size = on_wall_within(p, normal, is_end, limit);
+  while (size >= limit && limit < most) {
+    limit *= 2;
+    size = on_wall_within(p, normal, is_end, limit);
+  }
+  return std::max(size, 1e-4 * largest_);
+}
+
+double MeshSizes::on_wall_within(const Vector<3>& p, const Vector<3>& normal, bool is_end,
+                                 double most) const {
   double size = most;
   grid_.for_each_near(boundary_.wrap(p), largest_ + most / growth, [&](std::uint32_t j, const Vector<3>& d) {
     const double r = spheres_.r[j], from = std::abs(d.norm() - r);
@@ -140,7 +158,7 @@ double MeshSizes::on_wall(const Vector<3>& p, const Vector<3>& normal, bool is_e
       size = std::min(size, std::max(options_.per_gap * from, floor));
     }
   });
-  return std::max(size, 1e-4 * largest_);
+  return size;
 }
 
 std::size_t MeshSizes::neck_count(double radius, double least_sphere, double height) const {

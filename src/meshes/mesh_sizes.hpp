@@ -35,6 +35,8 @@ class MeshSizes {
   double on_sphere(const Vector<3>& p, const Vector<3>& center, double radius, bool is_cut_at_end,
                    const std::vector<NearBall>& near) const;
   /// Edges on a wall or an end with this unit normal at p. `is_end`: balls may be cut by it.
+  /// On flat walls far from all spheres they are as long as the distance lets them grow, up to 16 times the
+  /// edges on the largest sphere.
   double on_wall(const Vector<3>& p, const Vector<3>& normal, bool is_end) const;
   /// Distance of p from the nearest wall and end of a period.
   double from_walls(const Vector<3>& p) const;
@@ -48,10 +50,13 @@ class MeshSizes {
   }
 
   double largest_radius() const { return largest_; }
+  double least_radius() const { return spheres_.r.empty() ? 1 : std::ranges::min(spheres_.r); }
   /// The walls of a mesh, in its own frame; null for other domains.
   const std::shared_ptr<const Container>& container() const { return container_; }
 
  private:
+  /// As `on_wall`, at most `most`.
+  double on_wall_within(const Vector<3>& p, const Vector<3>& normal, bool is_end, double most) const;
   /// No edges are shorter for the sake of a contact with this gap between surfaces; 0 if it is not treated.
   /// `scale`: what gaps are shares of.
   double floor_at(double gap, double scale, double least_radius) const;

@@ -165,7 +165,11 @@ TEST(ConformingSurface, CadPartsKeepTheirVolume) {
         solids_in_walls(spheres, part, {.contact = contact, .gap = 0.03, .bridge_radius = 0.2}, 0.15);
     const ConformingSurface surface = conforming_surface(made.solids, {.solids = true});
     expect_sound(surface, 0.02);
-    EXPECT_NEAR(volume_of_regions(surface), volume_of(Domain(part)), 1e-11);
+    // Triangles across the narrow sides of the bore are off them by at most 2 % of the radius.
+    EXPECT_GT(surface.statement.wall_deviation, 0);
+    EXPECT_LE(surface.statement.wall_deviation, 0.01);
+    EXPECT_NEAR(volume_of_regions(surface), volume_of(Domain(part)),
+                surface.statement.wall_deviation * 2 * pi * 0.4 * 3);
     EXPECT_GT(surface.statement.least_angle, 15);
     if (contact == ContactTreatment::bridge) {
       EXPECT_EQ(made.gaps_at_edges, 1u);

@@ -39,6 +39,7 @@ struct MeshFileOptions {
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
   double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
+  std::string unit = {};       ///< of the lengths in the files; the scene's if empty
   std::string cut = {};        ///< the box that is meshed: "x = 1..4, y = 1..4, z = 0..5"; all if empty
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
   int prisms = 0;              ///< layers of prisms in the fluid, on spheres and walls where there is room
@@ -80,7 +81,10 @@ struct BedMeshReport {
   std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
   std::size_t gaps_at_edges = 0;
-  double wall_deviation = 0;  ///< how far facets stand off the round walls of a solid of revolution
+  /// How far triangles of walls are off those of a CAD part, or off round walls of a solid of revolution.
+  double wall_deviation = 0;
+  std::size_t shrunk_spheres = 0;  ///< that are smaller than in the packing, for gaps
+  double largest_shrinking = 0;    ///< of a radius, over the radius
 
   /// Whether the triangles are all: for formats whose files another program makes the mesh from. Then there
   /// are no tetrahedra, and volumes are those between the triangles.
@@ -101,6 +105,7 @@ struct BedMeshReport {
 
   double domain_volume = 0;
   double porosity = 0;         ///< in closed form, contacts as they were treated
+  std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed; nothing for a part
   double meshed_porosity = 0;  ///< of the mesh
   double contact_area = 0;     ///< cross-sections of necks, flat faces of caps
   struct Group {
