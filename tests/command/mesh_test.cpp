@@ -193,6 +193,30 @@ struct ReadSurface {
   }
 };
 
+TEST(MeshCommand, PolyMeshHasZonesOfFacesAndNothingOfAnEarlierMesh) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  const fs::path folder = result.folder / "constant/polyMesh";
+  const auto mesh = [&](const std::string& regions) {
+    const Ended ended = bernal(
+        {"mesh", result.out(), "--to", "openfoam", "-o", result.folder / "bed.foam", "--regions", regions});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+  };
+  mesh("all");
+  const std::string zones = text_of(folder / "faceZones");
+  for (const char* name : {"surface_of_spheres", "necks"})
+    EXPECT_NE(zones.find(fmt::format("    {}\n    {{\n        type            faceZone;", name)),
+              std::string::npos)
+        << name;
+  for (const char* name : {"cellLevel", "pointZones", "points.gz", "mine"})
+    std::ofstream(folder / name) << "x";
+  mesh("fluid");  // which has no faces between regions
+  for (const char* name : {"cellLevel", "pointZones", "points.gz", "faceZones"})
+    EXPECT_FALSE(fs::exists(folder / name)) << name;
+  EXPECT_TRUE(fs::exists(folder / "mine"));
+  EXPECT_TRUE(fs::exists(folder / "points"));
+}
+
 TEST(MeshCommand, SnappyNeedsNoMesherForItsClosedSurface) {
   const Packed result;
   const std::string folder = result.folder / "case";
