@@ -170,8 +170,8 @@ Option within(Option option, double least, double most) {
   option.range = fmt::format("{} to {}", least, most);
   const auto complaint = [](const std::string& word) {  // which no comparison finds
     double value = 0;
-    return CLI::detail::lexical_cast(word, value) && std::isnan(value) ? word + " is not a number"
-                                                                       : std::string();
+    return !CLI::detail::lexical_cast(word, value) || std::isnan(value) ? word + " is not a number"
+                                                                        : std::string();
   };
   return demanding(checked(std::move(option), complaint), CLI::Range(least, most));
 }

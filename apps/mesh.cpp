@@ -7,6 +7,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/mesh_files/mesh_packing.hpp"
+#include "bernal/plan/plan.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "results.hpp"
@@ -29,16 +30,21 @@ std::string text_of_place(const Vector<3>& p) {
 }
 
 void print_surface(const BedMeshReport& report, std::string_view unit) {
-  fmt::print("spheres      {}; {} necks", grouped(report.spheres), grouped(report.necks));
+  fmt::print("spheres      {}; {} bridges", grouped(report.spheres), grouped(report.necks));
   if (report.clipped > 0) fmt::print("; {} cut by faces of the box", grouped(report.clipped));
   if (report.cleared > 0) fmt::print(", {} made smaller, which nearly touched it", grouped(report.cleared));
   if (report.shrunk_necks > 0)
-    fmt::print(", {} of them narrower than asked for", grouped(report.shrunk_necks));
+    fmt::print(", {} of them narrower than asked for, by up to {:.0f} %, so that they stay apart",
+               grouped(report.shrunk_necks), 100 * report.largest_shrink);
+  if (report.cut_fillets > 0) fmt::print(", {} cylinders at ends of periods", grouped(report.cut_fillets));
   if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
   if (report.deepened_caps > 0) fmt::print(", {} caps deeper than asked for", grouped(report.deepened_caps));
   if (report.gaps_at_edges > 0)
     fmt::print("; {} with a gap instead, at walls where no bridge fits into a flat part",
                grouped(report.gaps_at_edges));
+  if (report.shrunk_spheres > 0)
+    fmt::print("; {} smaller than packed, by up to {:.2g} %", grouped(report.shrunk_spheres),
+               100 * report.largest_shrinking);
   if (report.wall_deviation > 0)
     fmt::print("\nwalls        triangles of curved walls, up to {:.3g} {} off them", report.wall_deviation,
                unit);
@@ -73,13 +79,16 @@ void print_report(const BedMeshReport& report, std::string_view unit) {
   if (!report.is_surface) print_quality(report, unit);
   fmt::print("porosity     {:.6f} in closed form, {:.6f} {}", report.porosity, report.meshed_porosity,
              report.is_surface ? "between the triangles" : "of the mesh");
+  if (report.packed_porosity) fmt::print("; {:.6f} as packed", *report.packed_porosity);
   if (report.contact_area > 0) fmt::print("; contact area {:.6g} {}^2", report.contact_area, unit);
   fmt::print("\n");
   for (const BedMeshReport::Group& group : report.groups) {
     fmt::print("{:<12} ", group.name);
     if (!report.is_surface) fmt::print("{} tetrahedra, ", grouped(group.tetrahedra));
     fmt::print("volume {:.9g} {}^3", group.volume, unit);
-    if (group.stated_volume) fmt::print(", {:.9g} in closed form", *group.stated_volume);
+    if (group.stated_volume)
+      fmt::print(", {:.9g} in closed form ({:+.2g} %)", *group.stated_volume,
+                 100 * (group.volume / *group.stated_volume - 1));
     fmt::print("\n");
   }
   fmt::print("seconds     ");
@@ -90,6 +99,16 @@ void print_report(const BedMeshReport& report, std::string_view unit) {
   fmt::print("\n");
 }
 
+/// Where the mesh may not be of what the user thinks of.
+void say_cautions(const Packing& packing) {
+  for (const std::filesystem::path& changed : changed_files(packing.scene))
+    say(stderr, "caution    {} has changed since it was packed into; the walls are those that it holds now\n",
+        plain_text(changed.string()));
+  if (packing.outcome != Outcome::converged && packing.outcome != Outcome::imported)
+    say(stderr, "caution    the packing is not what was asked for, {}: {}\n", name_of(packing.outcome),
+        packing.reason);
+}
+
 int mesh_of(const MeshCall& call) {
   require_named_file(call.file);
   const MeshFileOptions options = mesh_options_of(call.format, call.words);
@@ -97,6 +116,7 @@ int mesh_of(const MeshCall& call) {
   ProgressBar bar(call.quiet || call.json);
   bar.now("read");
   const Packing packing = read_result(call.folder);
+  if (!call.quiet) say_cautions(packing);
   const MeshedPacking meshed = mesh_packing(packing, options, call.file, bar.monitor());
   bar.clear();
   const BedMeshReport& report = meshed.report;
@@ -141,9 +161,9 @@ Command mesh_command() {
                 names_of(mesh_formats())),
        required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"})},
       {.text =
-           "Spheres that touch are treated first: bridge joins them by cylinders, gap makes only these "
-           "smaller, "
-           "shrink all by one factor, cap cuts caps off. Then bernal makes a surface whose triangles fit to "
+           "Spheres that touch are treated first: bridge joins them by cylinders, fillet by parts of tori "
+           "that touch both, gap makes only these smaller, shrink all by one factor, cap cuts caps off. Then "
+           "bernal makes a surface whose triangles fit to "
            "each other, equal at opposite ends of periods, and the program tetgen fills it (apt-get install "
            "tetgen). Tetrahedra of little quality are improved. What is printed: the quality as SICN, which "
            "is "

@@ -31,7 +31,7 @@ std::string name_of_patch(const SurfacePatch& patch, const VolumeMesh& mesh, con
     case SurfacePatch::Kind::wall:
       break;
   }
-  if (is_faceted(domain)) return "walls";
+  if (is_faceted(domain) || std::holds_alternative<Sphere>(domain)) return "walls";
   return std::holds_alternative<Cylinder>(domain) ? of_cylinder.at(patch.index) : name_of_end(patch.index);
 }
 

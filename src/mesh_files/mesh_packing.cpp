@@ -1,7 +1,9 @@
 #include "bernal/mesh_files/mesh_packing.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -51,6 +53,8 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.least_triangle_angle = stated.least_angle;
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
+  report.largest_shrink = stated.largest_shrink;
+  report.cut_fillets = stated.cut_fillets;
   report.widened_necks = stated.widened_necks;
   report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
@@ -108,7 +112,12 @@ Bounds<3> box_in(std::string_view text, Unit unit) {
   std::array<bool, 3> has{};
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t comma = std::min(text.find(',', from), text.size());
-    const LowerPart slab = slab_in(text.substr(from, comma - from), unit);
+    LowerPart slab;
+    try {
+      slab = slab_in(text.substr(from, comma - from), unit);
+    } catch (const Error&) {
+      break;
+    }
     from = comma + 1;
     int axis = 0;
     slab.direction.cwiseAbs().maxCoeff(&axis);
@@ -137,6 +146,7 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
                                            {.contact = options.contact,
                                             .gap = options.gap,
                                             .bridge_radius = options.bridge_radius,
+                                            .bridge_angle = options.bridge_angle,
                                             .shells = shells_of(packing, options)},
                                            options.neck_edge, monitor);
   report.gaps_at_edges = in_walls.gaps_at_edges;
@@ -150,6 +160,19 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
   report.cleared = part.shrunk;
   for (const Piece& piece : part.solids.pieces) report.clipped += !piece.cuts.empty();
   return {std::move(part.solids), std::move(part.of_packing)};
+}
+
+/// What the treatment of contacts made of the spheres.
+void take_spheres(const Packing& packing, const Solids& solids, const std::vector<std::uint32_t>& of_packing,
+                  BedMeshReport& report) {
+  for (std::size_t i = 0; i < solids.spheres.size(); ++i) {
+    const double packed = packing.spheres.r[of_packing.empty() ? i : of_packing[i]];
+    if (!(solids.spheres.r[i] < packed)) continue;
+    ++report.shrunk_spheres;
+    report.largest_shrinking = std::max(report.largest_shrinking, 1 - solids.spheres.r[i] / packed);
+  }
+  if (of_packing.empty())
+    report.packed_porosity = 1 - volume_of_balls(packing.spheres) / report.domain_volume;
 }
 
 /// Lets patches and regions name spheres by their numbers in the packing.
@@ -229,6 +252,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   const Stopwatch watch;
   monitor.report({"surface", -1, "points on spheres, necks and walls"});
   auto [solids, of_packing] = solids_to_mesh(packing, options, monitor, report);
+  take_spheres(packing, solids, of_packing, report);
   const MeshWriter& writer = mesh_writer_of(options.format);
   report.is_surface = writer.format.is_surface;
   ConformingSurface surface = conforming_surface(solids, sizes_of(options, report.is_surface), monitor);
@@ -261,10 +285,30 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   return {std::move(mesh), std::move(groups), std::move(solids)};
 }
 
+/// A folder that is named for a case of OpenFOAM stands for the file in it that has its name.
+fs::path file_named(const MeshFormat& format, const fs::path& named) {
+  if (format.ending == ".foam" && (fs::is_directory(named) || !named.has_extension())) {
+    const fs::path folder = named.has_filename() ? named : named.parent_path();
+    return folder / (fs::absolute(folder).lexically_normal().filename().string() + format.ending);
+  }
+  for (const MeshFormat& other : mesh_formats())
+    if (named.extension() == other.ending && other.ending != format.ending)
+      refuse(fmt::format("files of {} end in {}, those of {} in {}", other.name, other.ending, format.name,
+                         format.ending));
+  return named;
+}
+
+/// Lengths in another unit.
+void scale(VolumeMesh& mesh, double factor) {
+  for (auto* points : {&mesh.vertices, &mesh.middles})
+    for (Vector<3>& p : *points) p *= factor;
+}
+
 std::vector<std::string> names_of_files(const MeshWriter& writer, const fs::path& name) {
   std::vector<std::string> names{name.string()};
   names.insert(names.end(), writer.others.begin(), writer.others.end());
   if (!writer.beside.empty()) names.push_back(name.stem().string() + std::string(writer.beside));
+  names.insert(names.end(), writer.outdated.begin(), writer.outdated.end());
   return names;
 }
 
@@ -282,6 +326,11 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   for (const MeshKey& key : mesh_keys()) require_in_range(key, options);
   if (options.order > format.largest_order)
     refuse(fmt::format("the format {} has no elements of second order", format.name));
+  if (!options.unit.empty()) {
+    unit_named(options.unit);
+    if (format.is_surface)
+      refuse(fmt::format("the format {} has lengths in m; leave out ‹unit›", format.name));
+  }
   if (format.is_surface && options.solids)
     refuse(
         fmt::format("the format {} is for a mesh of the fluid alone; leave out ‹regions=all›", format.name));
@@ -302,11 +351,14 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
                            const Monitor& monitor) {
   require_mesh_format(options, packing.spheres.dimension());
   const MeshWriter& writer = mesh_writer_of(options.format);
-  const fs::path name = named.filename(), folder = folder_of(named);
-  require_free(folder, names_of_files(writer, name));
+  const fs::path file = file_named(writer.format, named), name = file.filename(), folder = folder_of(file);
+  const std::vector<std::string> names = names_of_files(writer, name);
+  require_free(folder, names);
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;
-  const auto [mesh, groups, solids] = mesh_of(packing, options, monitor, report);
+  auto [mesh, groups, solids] = mesh_of(packing, options, monitor, report);
+  const Unit unit = options.unit.empty() ? packing.scene.unit : unit_named(options.unit);
+  if (unit != packing.scene.unit) scale(mesh, conversion_factor(packing.scene.unit, unit));
   const Stopwatch writing;
   monitor.report({"write", -1, options.format});
   StagedFolder staged(folder);
@@ -317,12 +369,16 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
                               .folder = folder,
                               .name = name,
                               .title = title,
-                              .unit = name_of(packing.scene.unit),
+                              .unit = name_of(unit),
                               .metres = metres_per(packing.scene.unit),
                               .solids = solids,
                               .options = options},
                              staged);
-  meshed.files = staged.publish();
+  std::vector<std::string> replaced = staged.names();
+  std::ranges::copy_if(names, std::back_inserter(replaced), [&](const std::string& one) {
+    return std::ranges::find(staged.names(), one) == staged.names().end() && stands(folder / one);
+  });
+  meshed.files = staged.publish(replaced);
   for (fs::path& path : meshed.files) path = path.lexically_normal();
   report.parts.push_back({"write", writing.seconds()});
   return meshed;

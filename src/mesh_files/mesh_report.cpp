@@ -11,8 +11,12 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"spheres", report.spheres},
             {"necks", report.necks},
             {"shrunk_necks", report.shrunk_necks},
+            {"largest_shrink", report.largest_shrink},
+            {"cut_fillets", report.cut_fillets},
             {"gaps_at_edges", report.gaps_at_edges},
             {"wall_deviation", report.wall_deviation},
+            {"shrunk_spheres", report.shrunk_spheres},
+            {"largest_shrinking", report.largest_shrinking},
             {"widened_necks", report.widened_necks},
             {"deepened_caps", report.deepened_caps},
             {"clipped", report.clipped},
@@ -40,6 +44,7 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"porosity", report.porosity},
             {"meshed_porosity", report.meshed_porosity},
             {"contact_area", report.contact_area}};
+  json["packed_porosity"] = report.packed_porosity ? Json(*report.packed_porosity) : Json();
   json["least_curved_sicn"] = report.least_curved_sicn ? Json(*report.least_curved_sicn) : Json();
   json["curved_edges"] = report.curved_edges;
   json["straight_edges"] = report.straight_edges;

@@ -43,6 +43,9 @@ struct PolyMesh {
   std::vector<std::uint32_t> neighbour;  ///< of every inner face
   std::vector<Patch> patches;
   std::size_t cells = 0;
+
+  /// The inner face that two cells share. Precondition: there is one. Cost: O(log F).
+  std::size_t face_between(std::uint32_t cell, std::uint32_t other) const;
 };
 
 /// Cells are tetrahedra and, after these, prisms. Patches are surfaces that bound the mesh; what lies between

@@ -30,6 +30,11 @@ namespace {
 
 constexpr std::uintmax_t smallest_room = 1 << 20;  // bytes
 constexpr const char* log_name = "said.txt";
+/// Vertices that TetGen puts in may come to lie in one plane with three others, which ends it by an assertion
+/// of its own; with a slightly larger limit it puts in others.
+constexpr int most_tries_again = 3;
+constexpr double another_radius_over_edge = 1.01;
+bool is_its_own_fault(const ChildEnd& end) { return end.signal == SIGABRT || end.signal == SIGSEGV; }
 
 /// A folder for the mesher's files, which goes with this object.
 class FolderOfMesher {
@@ -164,7 +169,12 @@ VolumeMesh run_tetgen(const ConformingSurface& surface, const TetgenOptions& opt
   const FolderOfMesher folder;
   monitor.report({"fill", 0, "the surface for TetGen"});
   write_for_tetgen(surface, points_of_holes(surface), folder.path());
-  const ChildEnd end = run_child(options, folder.path(), monitor);
+  TetgenOptions tried = options;
+  ChildEnd end = run_child(tried, folder.path(), monitor);
+  for (int again = 0; again < most_tries_again && is_its_own_fault(end); ++again) {
+    tried.radius_over_edge *= another_radius_over_edge;
+    end = run_child(tried, folder.path(), monitor);
+  }
   peak_bytes = end.peak_bytes;
   require_done(end, folder.path());
   monitor.report({"fill", 0.95, "what TetGen left is read"});

@@ -97,6 +97,11 @@ def with_openfoam(result, name, *options):
     cells = [line.split()[-1] for line in said.splitlines() if line.strip().startswith("cells:")]
     count = sum(report[kind] for kind in ("tetrahedra", "prisms", "prism_ends"))
     expect(cells == [str(count)], f"{name}: it counts {cells} cells")
+    mesh(result, "openfoam", "case/bed.foam", "--regions", "all")
+    said = run("checkMesh", "-case", case, "-allTopology", folder=result.folder)
+    zones = said[said.index("Checking faceZone topology"):said.index("Checking basic cellZone")]
+    expect("Mesh OK" in said and all(zone in zones for zone in ("surface_of_spheres", "necks", "caps")),
+           f"{name}: it finds the zones of faces between regions")
     return report
 
 

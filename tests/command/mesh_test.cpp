@@ -184,6 +184,32 @@ diameter = 0.24
   }
 }
 
+TEST(MeshCommand, FilletsHoldTheStatedPorosity) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  const auto mesh = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"mesh",      result.out(), "--to",
+                                      "vtu",       "-o",         result.folder / "bed.vtu",
+                                      "--contact", "fillet",     "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ended ended = bernal(words);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  };
+  const auto report = mesh({"--regions", "all"});
+  EXPECT_GT(report["necks"], 0);
+  EXPECT_EQ(report["cut_fillets"], 0);
+  EXPECT_GE(report["least_sicn"], 0.1);
+  EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 0.01);
+  EXPECT_NEAR(report["contact_area"].get<double>(),
+              report["necks"].get<double>() * 3.14159265358979 * 0.1 * 0.1, 1e-9);
+  // A waist of 0.2 radii is seen under more than 12 degrees.
+  EXPECT_LT(mesh({"--bridge-angle", "10"})["contact_area"], report["contact_area"]);
+  expect_refused_in_one_line(bernal({"mesh", result.out(), "--to", "gmsh", "-o", result.folder / "a.msh",
+                                     "--bridge-angle", "10", "--bridge-radius", "0.2"}),
+                             {"bridge_radius", "bridge_angle"});
+}
+
 /// How many triangles of an OBJ file have each edge, and the names of its groups.
 struct ReadSurface {
   std::map<std::pair<int, int>, int> edges;
@@ -199,6 +225,30 @@ struct ReadSurface {
     }
   }
 };
+
+TEST(MeshCommand, PolyMeshHasZonesOfFacesAndNothingOfAnEarlierMesh) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  const fs::path folder = result.folder / "constant/polyMesh";
+  const auto mesh = [&](const std::string& regions) {
+    const Ended ended = bernal(
+        {"mesh", result.out(), "--to", "openfoam", "-o", result.folder / "bed.foam", "--regions", regions});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+  };
+  mesh("all");
+  const std::string zones = text_of(folder / "faceZones");
+  for (const char* name : {"surface_of_spheres", "necks"})
+    EXPECT_NE(zones.find(fmt::format("    {}\n    {{\n        type            faceZone;", name)),
+              std::string::npos)
+        << name;
+  for (const char* name : {"cellLevel", "pointZones", "points.gz", "mine"})
+    std::ofstream(folder / name) << "x";
+  mesh("fluid");  // which has no faces between regions
+  for (const char* name : {"cellLevel", "pointZones", "points.gz", "faceZones"})
+    EXPECT_FALSE(fs::exists(folder / name)) << name;
+  EXPECT_TRUE(fs::exists(folder / "mine"));
+  EXPECT_TRUE(fs::exists(folder / "points"));
+}
 
 TEST(MeshCommand, SnappyNeedsNoMesherForItsClosedSurface) {
   const Packed result;
@@ -235,6 +285,73 @@ TEST(MeshCommand, SnappyNeedsNoMesherForItsClosedSurface) {
   expect_refused_in_one_line(
       bernal({"mesh", result.out(), "--to", "abaqus", "-o", folder + "/bed.inp", "--prisms", "2"}),
       {"abaqus", "prisms"});
+}
+
+/// A mesher that ends by an assertion of its own as often as asked, and works then.
+void write_faulty_tetgen(const Folder& folder, int faults) {
+  std::ofstream(folder / "tetgen") << "#!/bin/sh\nn=$(cat '" << folder / "faults"
+                                   << "')\n[ \"$n\" -eq 0 ] || { echo $((n - 1)) >'" << folder / "faults"
+                                   << "'; kill -ABRT $$; }\nexec /usr/bin/tetgen \"$@\"\n";
+  std::ofstream(folder / "faults") << faults << "\n";
+  fs::permissions(folder / "tetgen", fs::perms::owner_all);
+}
+
+TEST(MeshCommand, AMesherThatFailsByItselfIsAskedAgain) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  const Folder programs;
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (programs.path().string() + ":" + path).c_str(), 1);
+  for (const int faults : {1, 4}) {
+    write_faulty_tetgen(programs, faults);
+    const Ended ended =
+        bernal({"mesh", result.out(), "--to", "vtu", "-o", result.folder / "bed.vtu", "--mesh-size", "0.9"});
+    if (faults == 1) {
+      EXPECT_EQ(ended.status, 0) << ended.err;
+    } else {
+      expect_refused_in_one_line(ended, {"TetGen made no mesh", "signal 6"});
+    }
+  }
+  setenv("PATH", path.c_str(), 1);
+}
+
+TEST(MeshCommand, SaysWhatTheMeshIsOf) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  const auto meshed = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"mesh",  result.out(), "--contact",   "shrink",
+                                      "--gap", "0.05",       "--mesh-size", "0.9"};
+    words.insert(words.end(), more.begin(), more.end());
+    return bernal(words);
+  };
+  // A folder is a case of OpenFOAM; its points are in the unit that is asked for.
+  const std::string folder = result.folder / "case";
+  const Ended ended = meshed({"--to", "openfoam", "-o", folder, "--unit", "m"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_NE(ended.out.find("5 smaller than packed"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("as packed"), std::string::npos);
+  EXPECT_NE(ended.err.find("floor (patch)"), std::string::npos) << ended.err;
+  EXPECT_TRUE(fs::exists(fs::path(folder) / "case.foam"));
+  std::ifstream points(fs::path(folder) / "constant/polyMesh/points");
+  double largest = 0;
+  for (std::string line; std::getline(points, line);) {
+    double x = 0, y = 0, z = 0;
+    if (std::sscanf(line.c_str(), "(%lf %lf %lf)", &x, &y, &z) == 3) largest = std::max(largest, z);
+  }
+  EXPECT_NEAR(largest, 2.5e-3, 1e-12);
+  expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / "bed.msh"}), {".vtu", "gmsh"});
+  expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / "bed.vtu", "--unit", "parsec"}),
+                             {"parsec"});
+  expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / "bed.vtu", "--gap-size", "4 mm"}),
+                             {"4 mm is not a number"});
+  // So is a packing that ended before it had what was asked.
+  const std::string many = std::string(few_spheres).replace(std::string(few_spheres).find("= 5"), 3, "= 50");
+  EXPECT_EQ(
+      bernal({"pack", result.folder.write("many.toml", many).string(), "-o", result.folder / "many"}).status,
+      3);
+  const Ended full = bernal(
+      {"mesh", result.folder / "many", "--to", "vtu", "-o", result.folder / "bed.vtu", "--mesh-size", "0.9"});
+  EXPECT_NE(full.err.find("not what was asked for, full"), std::string::npos) << full.err;
 }
 
 TEST(MeshCommand, RefusesWhatItCannotWrite) {

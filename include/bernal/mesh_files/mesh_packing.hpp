@@ -34,11 +34,13 @@ struct MeshFileOptions {
   ContactTreatment contact = ContactTreatment::bridge;
   double gap = 0.01;           ///< contacts nearer than this are treated: over the sum of the radii, at walls
                                ///< over the radius
-  double bridge_radius = 0.2;  ///< of the smaller radius
+  double bridge_radius = 0.2;  ///< of the smaller radius; of fillets at their waists
+  double bridge_angle = 0;     ///< instead, in degrees: the least half-angle under which spheres see bridges
   double sphere_edge = 0.3;    ///< longest edges on spheres
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
   double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
+  std::string unit = {};       ///< of the lengths in the files; the scene's if empty
   std::string cut = {};        ///< the box that is meshed: "x = 1..4, y = 1..4, z = 0..5"; all if empty
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
   int prisms = 0;              ///< layers of prisms in the fluid, on spheres and walls where there is room
@@ -74,6 +76,8 @@ struct BedMeshReport {
   double least_triangle_angle = 0;  ///< in degrees
   Vector<3> place_of_least_angle = Vector<3>::Zero();
   std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
+  double largest_shrink = 0;      ///< of their radii, over the one asked for
+  std::size_t cut_fillets = 0;    ///< that are cylinders, as ends of periods would cut or nearly touch them
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
   std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
   std::size_t clipped = 0;        ///< spheres that the faces of a box cut out of the packing clip
@@ -82,6 +86,8 @@ struct BedMeshReport {
   std::size_t gaps_at_edges = 0;
   /// How far triangles of walls are off those of a CAD part, or off round walls of a solid of revolution.
   double wall_deviation = 0;
+  std::size_t shrunk_spheres = 0;  ///< that are smaller than in the packing, for gaps
+  double largest_shrinking = 0;    ///< of a radius, over the radius
 
   /// Whether the triangles are all: for formats whose files another program makes the mesh from. Then there
   /// are no tetrahedra, and volumes are those between the triangles.
@@ -109,8 +115,9 @@ struct BedMeshReport {
 
   double domain_volume = 0;
   double porosity = 0;         ///< in closed form, contacts as they were treated
+  std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed; nothing for a part
   double meshed_porosity = 0;  ///< of the mesh
-  double contact_area = 0;     ///< cross-sections of necks, flat faces of caps
+  double contact_area = 0;     ///< least cross-sections of necks, flat faces of caps
   struct Group {
     std::string name;
     double volume = 0;                    ///< of the mesh
