@@ -63,7 +63,9 @@ struct MeshWriter {
   MeshFormat format;
   std::vector<std::string_view> others = {};  ///< names of files that go with it
   std::string_view beside = {};               ///< and how that of another ends, after the stem of the file's
-  bool for_gradients = false;                 ///< see `ImproveOptions`
+  /// Files that programs leave beside `others` and that are wrong for another mesh: these go.
+  std::vector<std::string_view> outdated = {};
+  bool for_gradients = false;  ///< see `ImproveOptions`
   /// Writes the files and returns what they hold.
   std::string (*write)(const MeshToWrite&, StagedFolder&);
 };

@@ -1,7 +1,9 @@
 #include "bernal/mesh_files/mesh_packing.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -50,6 +52,8 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.least_triangle_angle = stated.least_angle;
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
+  report.largest_shrink = stated.largest_shrink;
+  report.cut_fillets = stated.cut_fillets;
   report.widened_necks = stated.widened_necks;
   report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
@@ -141,6 +145,7 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
                                            {.contact = options.contact,
                                             .gap = options.gap,
                                             .bridge_radius = options.bridge_radius,
+                                            .bridge_angle = options.bridge_angle,
                                             .shells = shells_of(packing, options)},
                                            options.neck_edge, monitor);
   report.gaps_at_edges = in_walls.gaps_at_edges;
@@ -278,6 +283,7 @@ std::vector<std::string> names_of_files(const MeshWriter& writer, const fs::path
   std::vector<std::string> names{name.string()};
   names.insert(names.end(), writer.others.begin(), writer.others.end());
   if (!writer.beside.empty()) names.push_back(name.stem().string() + std::string(writer.beside));
+  names.insert(names.end(), writer.outdated.begin(), writer.outdated.end());
   return names;
 }
 
@@ -319,7 +325,8 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
   require_mesh_format(options, packing.spheres.dimension());
   const MeshWriter& writer = mesh_writer_of(options.format);
   const fs::path file = file_named(writer.format, named), name = file.filename(), folder = folder_of(file);
-  require_free(folder, names_of_files(writer, name));
+  const std::vector<std::string> names = names_of_files(writer, name);
+  require_free(folder, names);
   MeshedPacking meshed;
   BedMeshReport& report = meshed.report;
   auto [mesh, groups, solids] = mesh_of(packing, options, monitor, report);
@@ -340,7 +347,11 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
                               .solids = solids,
                               .options = options},
                              staged);
-  meshed.files = staged.publish();
+  std::vector<std::string> replaced = staged.names();
+  std::ranges::copy_if(names, std::back_inserter(replaced), [&](const std::string& one) {
+    return std::ranges::find(staged.names(), one) == staged.names().end() && stands(folder / one);
+  });
+  meshed.files = staged.publish(replaced);
   for (fs::path& path : meshed.files) path = path.lexically_normal();
   report.parts.push_back({"write", writing.seconds()});
   return meshed;

@@ -62,6 +62,35 @@ void write_zones(const MeshToWrite& file, StagedFolder& staged) {
   });
 }
 
+/// Faces between regions, a zone a surface, whose normals are those of its triangles: out of the spheres.
+void write_face_zones(const MeshToWrite& file, const PolyMesh& poly, StagedFolder& staged) {
+  struct ZoneFace {
+    std::size_t face;
+    bool is_flipped;
+  };
+  std::vector<std::vector<ZoneFace>> of_surface(file.groups.surfaces.size());
+  const auto sides = sides_of_triangles(file.mesh);
+  for (std::size_t t = 0; t < sides.size(); ++t) {
+    const auto& [behind, before] = sides[t];
+    if (!behind.is_there() || !before.is_there()) continue;
+    of_surface[file.groups.surface_of(file.mesh, t)].push_back(
+        {poly.face_between(behind.tetrahedron, before.tetrahedron), before.tetrahedron < behind.tetrahedron});
+  }
+  std::vector<std::size_t> zones;
+  for (std::size_t s = 0; s < of_surface.size(); ++s)
+    if (!of_surface[s].empty()) zones.push_back(s);
+  if (zones.empty()) return;
+  write_list(file, staged, "regIOobject", "faceZones", zones, {}, [&](TextFile& out, std::size_t s) {
+    out.add("    ", file.groups.surfaces[s],
+            "\n    {\n        type            faceZone;\n        faceLabels      List<label>\n",
+            of_surface[s].size(), "\n(\n");
+    for (const ZoneFace& of : of_surface[s]) out.add(of.face, "\n");
+    out.add(");\n        flipMap         List<bool>\n", of_surface[s].size(), "\n(\n");
+    for (const ZoneFace& of : of_surface[s]) out.add(of.is_flipped ? "1\n" : "0\n");
+    out.add(");\n    }\n");
+  });
+}
+
 std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& staged) {
   const VolumeMesh& mesh = file.mesh;
   const PolyMesh poly = poly_mesh_of(mesh, file.groups);
@@ -78,6 +107,7 @@ std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& stage
   write_list(file, staged, "labelList", "neighbour", poly.neighbour, note, add_label);
   write_boundary(file, poly, staged);
   write_zones(file, staged);
+  write_face_zones(file, poly, staged);
   write_system_of_openfoam(file, staged);
   staged.write(file.name.string(), "");
   std::vector<std::string> patches;
@@ -104,10 +134,16 @@ MeshWriter openfoam_of_mesh() {
   return {
       .format = {"openfoam",
                  "OpenFOAM: constant/polyMesh beside the file, a patch a surface, cyclic ones at ends of "
-                 "periods, a cell zone a region",
+                 "periods, a cell zone a region, a face zone a surface between regions",
                  ".foam", 1},
       .others = {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
-                 "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "constant/polyMesh/cellZones"},
+                 "constant/polyMesh/neighbour", "constant/polyMesh/boundary", "constant/polyMesh/cellZones",
+                 "constant/polyMesh/faceZones"},
+      .outdated = {"constant/polyMesh/pointZones", "constant/polyMesh/cellLevel",
+                   "constant/polyMesh/pointLevel", "constant/polyMesh/level0Edge",
+                   "constant/polyMesh/surfaceIndex", "constant/polyMesh/refinementHistory",
+                   "constant/polyMesh/points.gz", "constant/polyMesh/faces.gz", "constant/polyMesh/owner.gz",
+                   "constant/polyMesh/neighbour.gz", "constant/polyMesh/boundary.gz"},
       .for_gradients = true,
       .write = write_mesh_for_openfoam};
 }

@@ -132,6 +132,14 @@ class BoundaryFaces {
 
 }  // namespace
 
+std::size_t PolyMesh::face_between(std::uint32_t cell, std::uint32_t other) const {
+  const auto inner = owner.begin() + static_cast<std::ptrdiff_t>(neighbour.size());
+  const auto [first, last] = std::equal_range(owner.begin(), inner, std::min(cell, other));
+  const auto at = [&](auto of) { return neighbour.begin() + (of - owner.begin()); };
+  return static_cast<std::size_t>(std::lower_bound(at(first), at(last), std::max(cell, other)) -
+                                  neighbour.begin());
+}
+
 PolyMesh poly_mesh_of(const VolumeMesh& mesh, const MeshGroups& groups) {
   PolyMesh poly;
   add_inner_faces(mesh, poly);

@@ -23,6 +23,9 @@ struct PolyMesh {
   std::vector<std::uint32_t> owner;      ///< of every face
   std::vector<std::uint32_t> neighbour;  ///< of every inner face
   std::vector<Patch> patches;
+
+  /// The inner face that two cells share. Precondition: there is one. Cost: O(log F).
+  std::size_t face_between(std::uint32_t cell, std::uint32_t other) const;
 };
 
 /// Patches are surfaces that bound the mesh; what lies between two regions are inner faces. Cost: about 1 µs

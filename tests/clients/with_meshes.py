@@ -96,6 +96,11 @@ def with_openfoam(result, name):
     expect("Mesh OK" in said, f"{name}: checkMesh finds the mesh good")
     cells = [line.split()[-1] for line in said.splitlines() if line.strip().startswith("cells:")]
     expect(cells == [str(report["tetrahedra"])], f"{name}: it counts {cells} cells")
+    mesh(result, "openfoam", "case/bed.foam", "--regions", "all")
+    said = run("checkMesh", "-case", case, "-allTopology", folder=result.folder)
+    zones = said[said.index("Checking faceZone topology"):said.index("Checking basic cellZone")]
+    expect("Mesh OK" in said and all(zone in zones for zone in ("surface_of_spheres", "necks", "caps")),
+           f"{name}: it finds the zones of faces between regions")
 
 
 def with_snappy(result, name, *options):
