@@ -34,7 +34,9 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
   if (report.clipped > 0) fmt::print("; {} cut by faces of the box", grouped(report.clipped));
   if (report.cleared > 0) fmt::print(", {} made smaller, which nearly touched it", grouped(report.cleared));
   if (report.shrunk_necks > 0)
-    fmt::print(", {} of them narrower than asked for", grouped(report.shrunk_necks));
+    fmt::print(", {} of them narrower than asked for, by up to {:.0f} %, so that they stay apart",
+               grouped(report.shrunk_necks), 100 * report.largest_shrink);
+  if (report.cut_fillets > 0) fmt::print(", {} cylinders at ends of periods", grouped(report.cut_fillets));
   if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
   if (report.deepened_caps > 0) fmt::print(", {} caps deeper than asked for", grouped(report.deepened_caps));
   if (report.gaps_at_edges > 0)
@@ -153,9 +155,9 @@ Command mesh_command() {
                 names_of(mesh_formats())),
        required({"-o,--output", &call->file, "The file; those that go with it stand beside it", "FILE"})},
       {.text =
-           "Spheres that touch are treated first: bridge joins them by cylinders, gap makes only these "
-           "smaller, "
-           "shrink all by one factor, cap cuts caps off. Then bernal makes a surface whose triangles fit to "
+           "Spheres that touch are treated first: bridge joins them by cylinders, fillet by parts of tori "
+           "that touch both, gap makes only these smaller, shrink all by one factor, cap cuts caps off. Then "
+           "bernal makes a surface whose triangles fit to "
            "each other, equal at opposite ends of periods, and the program tetgen fills it (apt-get install "
            "tetgen). Tetrahedra of little quality are improved. What is printed: the quality as SICN, which "
            "is "

@@ -37,7 +37,8 @@ struct Taken {
   void operator()(bool MeshFileOptions::*member) const { options.*member = place() == 1; }
   void operator()(ContactTreatment MeshFileOptions::*member) const {
     constexpr ContactTreatment treatments[] = {ContactTreatment::bridge, ContactTreatment::gap,
-                                               ContactTreatment::shrink, ContactTreatment::cap};
+                                               ContactTreatment::shrink, ContactTreatment::cap,
+                                               ContactTreatment::fillet};
     options.*member = treatments[place()];
   }
   std::size_t place() const {
@@ -56,9 +57,13 @@ const std::vector<MeshKey>& mesh_keys() {
        .what = "What is done where spheres touch or nearly do; bridge if absent",
        .placeholder = "WORD",
        .to = &Of::contact,
-       .words = {"bridge", "gap", "shrink", "cap"}},
-      {"gap", "Contacts nearer than this, in radii; 0.01 if absent", "SHARE", &Of::gap, 1e-6, 0.5},
-      {"bridge_radius", "Of bridges, in radii; 0.2 if absent", "SHARE", &Of::bridge_radius, 0.01, 0.7},
+       .words = {"bridge", "gap", "shrink", "cap", "fillet"}},
+      {"gap", "Contacts nearer than this, in radii; 0.01 if absent", "SHARE", &Of::gap, 1e-3, 0.5},
+      {"bridge_radius", "Of bridges, and of waists of fillets, in radii of the smaller sphere; 0.2 if absent",
+       "SHARE", &Of::bridge_radius, 0.05, 0.7},
+      {"bridge_angle",
+       "Instead: the least angle at centres of spheres between the axis of a bridge and where it begins",
+       "DEGREES", &Of::bridge_angle, 3, 44},
       {"mesh_size", "Edges on spheres, in radii; 0.3 if absent", "SHARE", &Of::sphere_edge, 0.02, 0.9},
       {"neck_size", "Edges where bridges begin, in radii; 0.15 if absent", "SHARE", &Of::neck_edge, 0.01,
        0.9},
@@ -92,7 +97,10 @@ void require_in_range(const MeshKey& key, const MeshFileOptions& options) {
   const auto require = [&](auto value) {
     if (!(value >= key.least && value <= key.most)) refuse_value(key, fmt::format("{}", value));
   };
-  if (const auto* number = std::get_if<double MeshFileOptions::*>(&key.to)) require(options.**number);
+  if (const auto* number = std::get_if<double MeshFileOptions::*>(&key.to); number != nullptr) {
+    static const MeshFileOptions defaults;  // some of which stand for what is absent
+    if (options.**number != defaults.**number) require(options.**number);
+  }
   if (const auto* whole = std::get_if<int MeshFileOptions::*>(&key.to)) require(options.**whole);
 }
 
@@ -109,6 +117,8 @@ MeshFileOptions mesh_options_of(std::string_view format, const std::map<std::str
     std::visit(Taken{*key, text, options}, key->to);
     require_in_range(*key, options);
   }
+  if (words.contains("bridge_radius") && words.contains("bridge_angle"))
+    throw Error(ErrorCode::bad_argument, "bridges take ‹bridge_radius› or ‹bridge_angle›, not both");
   return options;
 }
 

@@ -52,6 +52,8 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.least_triangle_angle = stated.least_angle;
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
+  report.largest_shrink = stated.largest_shrink;
+  report.cut_fillets = stated.cut_fillets;
   report.widened_necks = stated.widened_necks;
   report.deepened_caps = stated.deepened_caps;
   report.porosity = stated.fluid_volume / report.domain_volume;
@@ -143,6 +145,7 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
                                            {.contact = options.contact,
                                             .gap = options.gap,
                                             .bridge_radius = options.bridge_radius,
+                                            .bridge_angle = options.bridge_angle,
                                             .shells = shells_of(packing, options)},
                                            options.neck_edge, monitor);
   report.gaps_at_edges = in_walls.gaps_at_edges;

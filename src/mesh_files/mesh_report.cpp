@@ -11,6 +11,8 @@ std::string mesh_report_as_json(const Packing& packing, const BedMeshReport& rep
             {"spheres", report.spheres},
             {"necks", report.necks},
             {"shrunk_necks", report.shrunk_necks},
+            {"largest_shrink", report.largest_shrink},
+            {"cut_fillets", report.cut_fillets},
             {"gaps_at_edges", report.gaps_at_edges},
             {"wall_deviation", report.wall_deviation},
             {"shrunk_spheres", report.shrunk_spheres},

@@ -66,11 +66,12 @@ struct SurfaceStatement {
   /// Whose radius is smaller than asked for, so that others and ends of periods stay clear.
   std::size_t shrunk_necks = 0;
   double largest_shrink = 0;      ///< over the radius asked for
+  std::size_t cut_fillets = 0;    ///< that are cylinders, as ends of periods would cut or nearly touch them
   std::size_t widened_necks = 0;  ///< by up to three tenths, so that ends of periods cut them clearly
   std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
   double fluid_volume = 0;  ///< in closed form; where caps of a sphere meet, what they share is counted twice
   double meshed_fluid_volume = 0;  ///< between the triangles
-  double contact_area = 0;         ///< cross-sections of necks, flat faces of caps
+  double contact_area = 0;         ///< least cross-sections of necks, flat faces of caps
   double wall_deviation = 0;       ///< how far triangles of walls of a mesh are off it, at most
 };
 

@@ -117,7 +117,7 @@ class FlatFaces {
           return Vector<3>((p - center).dot(neck.across), (p - center).dot(around), 0);
         },
         [&](const Vector<3>& p) { return foot_of(draft_, neck, p[0] * neck.across + p[1] * around); });
-    part.add_chain(neck.rims[1], true);
+    part.add_chain(neck.rim_points[1], true);
     part.mesh(draft_.add_patch({SurfacePatch::Kind::wall,
                                 *neck.wall,
                                 {draft_.region_of_neck(n), SurfacePatch::nothing},

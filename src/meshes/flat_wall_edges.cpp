@@ -109,7 +109,7 @@ class FlatEdgePoints {
     }
     for (const DraftNeck& neck : draft_.necks)
       if (neck.wall)
-        for (const std::uint32_t id : neck.rims[1]) add_to(walls_.of_flat_part[*neck.wall], {id, no_edge});
+        for (const std::uint32_t id : neck.rim_points[1]) add_to(walls_.of_flat_part[*neck.wall], {id, no_edge});
   }
 
   void add_to(std::uint32_t part, const Point& point) {

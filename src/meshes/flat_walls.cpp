@@ -10,6 +10,7 @@
 #include "domain/revolved_surface.hpp"
 #include "geometry/edges.hpp"
 #include "geometry/measures.hpp"
+#include "meshes/neck_shape.hpp"
 #include "solids/flat_faces.hpp"
 
 namespace bernal {
@@ -209,8 +210,7 @@ SolidsInWalls solids_in_walls(const Spheres<dynamic>& spheres, const Domain& dom
   if (const auto* revolved = std::get_if<Revolved>(&domain); revolved != nullptr && revolved->inset == 0)
     return solids_in_facets(spheres, *revolved, options, neck_edge, monitor);
   const auto* mesh = std::get_if<Mesh>(&domain);
-  if (mesh == nullptr || options.contact != ContactTreatment::bridge)
-    return {solids_of(spheres, domain, options, monitor)};
+  if (mesh == nullptr || !joins(options.contact)) return {solids_of(spheres, domain, options, monitor)};
   SolidsInWalls made;
   Spheres<dynamic> smaller = spheres;
   const PlanarWalls walls = flat_walls_of(*mesh);
@@ -221,7 +221,12 @@ SolidsInWalls solids_in_walls(const Spheres<dynamic>& spheres, const Domain& dom
     bool has_room = true;
     for (const FlatFeet::Foot& foot : feet.near(spheres.center(i), r, reach)) {
       nearest = std::min(nearest, foot.distance);
-      has_room = has_room && FlatFeet::radius_in(foot, options.bridge_radius * r, neck_edge * r) > 0;
+      const NeckEnds ends{r, {}, std::max(foot.distance, r)};
+      const bool is_fillet = options.contact == ContactTreatment::fillet;
+      double asked = options.bridge_angle > 0 ? radius_for_angle(ends, options.bridge_angle, is_fillet)
+                                              : options.bridge_radius * r;
+      if (is_fillet) asked = fillet_between(ends, asked).rims[1];
+      has_room = has_room && FlatFeet::radius_in(foot, asked, neck_edge * r) > 0;
     }
     if (has_room) continue;
     constexpr double rounding = 1e-12;

@@ -62,9 +62,9 @@ class FlatFeet {
 
 /// Solids for a mesh of the pores. As `solids_of`, but for bridges in walls of triangles: a bridge stands
 /// within a planar part, half an edge from its border. A sphere that is nearer than the gap to a part where
-/// there is no room for at least half of the bridge's radius is made smaller, about its centre, until it has
-/// the gap from all walls. A solid of revolution becomes a mesh around it, whose flat sides touch it and
-/// stand off it by at most 2 % of the smallest radius between.
+/// there is no room for at least half of the bridge's radius there is made smaller, about its centre, until
+/// it has the gap from all walls. A solid of revolution becomes a mesh around it, whose flat sides touch it
+/// and stand off it by at most 2 % of the smallest radius between.
 struct SolidsInWalls {
   Solids solids;
   double wall_deviation = 0;      ///< how far walls stand off those of the domain, as a length

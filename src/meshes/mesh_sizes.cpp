@@ -52,7 +52,7 @@ MeshSizes::MeshSizes(const Solids& solids, const SurfaceMeshOptions& options)
       spheres_(solids.spheres.in<3>()),
       grid_(spheres_, boundary_, 2 * largest_of(solids.spheres.r)),
       largest_(largest_of(solids.spheres.r)),
-      has_necks_(solids.contacts.treatment == ContactTreatment::bridge) {
+      has_necks_(joins(solids.contacts.treatment)) {
   if (!std::holds_alternative<Mesh>(solids.domain)) return;
   container_ = local_container(solids.domain, nullptr);
   frame_ = frame_of(solids.domain);
@@ -75,7 +75,7 @@ std::vector<NearBall> MeshSizes::near(const Vector<3>& center, std::uint32_t sph
 double MeshSizes::floor_at(double gap, double scale, double least_radius) const {
   if (!(gap < solids_.contacts.gap * scale)) return 0;
   const ContactTreatment treatment = solids_.contacts.treatment;
-  if (treatment == ContactTreatment::bridge) return options_.neck_edge * least_radius;
+  if (joins(treatment)) return options_.neck_edge * least_radius;
   return treatment == ContactTreatment::cap ? options_.per_gap * solids_.contacts.gap * scale : 0;
 }
 
@@ -167,7 +167,7 @@ std::size_t MeshSizes::neck_count(double radius, double least_sphere, double hei
   const double around = 2 * std::numbers::pi * radius;
   const double asked = std::max(6.0, std::ceil(around / (options_.neck_edge * least_sphere)));
   const double for_angles = std::ceil(around / (edge_per_height * height));
-  return static_cast<std::size_t>(std::min(std::max(asked, for_angles), 4 * asked));
+  return static_cast<std::size_t>(std::min(std::max(asked, for_angles), 16 * asked));
 }
 
 }  // namespace bernal

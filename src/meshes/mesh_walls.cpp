@@ -65,7 +65,7 @@ class FacetedWalls {
       if (edges[p].empty()) continue;  // without height: within another part
       const auto add_boundary = [&](PlanarPart& part) {
         for (const std::uint32_t e : edges[p]) part.add_chain(chains[e], false);
-        for (const std::uint32_t n : feet[p]) part.add_chain(draft_.necks[n].rims[1], true);
+        for (const std::uint32_t n : feet[p]) part.add_chain(draft_.necks[n].rim_points[1], true);
       };
       if (walls_.parts[p].is_planar()) {
         mesh_planar(walls_.parts[p], add_boundary);

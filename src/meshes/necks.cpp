@@ -1,14 +1,13 @@
-// Necks: where they are, how wide they may be, the points of their circles.
+// Necks: how wide they may be, the points of their circles.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
-#include "meshes/surface_draft.hpp"
+#include "meshes/neck_bonds.hpp"
 #include "meshes/wall_views.hpp"
 #include "near/point_grid.hpp"
 
@@ -19,17 +18,6 @@ using std::numbers::pi;
 /// No neck becomes narrower than this share of what was asked for.
 constexpr double least_share = 0.2;
 
-/// What a neck joins, in whatever image; its radius is to be found.
-struct NeckBond {
-  std::array<std::uint32_t, 2> spheres = {};
-  std::optional<std::uint32_t> wall = {};
-  std::array<int, 3> step = {};  ///< from the image of the first sphere to that of the second
-  Vector<3> axis = Vector<3>::UnitZ();
-  double distance = 0;
-  double asked = 0, radius = 0;
-  double room = std::numeric_limits<double>::infinity();  ///< for the radius, on the wall
-};
-
 class Necks {
  public:
   explicit Necks(SurfaceDraft& draft)
@@ -39,12 +27,17 @@ class Necks {
         grid_(spheres_, draft.boundary, 2 * draft.sizes.largest_radius()) {}
 
   void make() {
-    between_spheres();
-    at_walls();
-    for (NeckBond& bond : bonds_) bond.radius = clear_of_ends(bond, bond.asked, true);
+    bonds_ = neck_bonds_of(draft_);
+    for (NeckBond& bond : bonds_) {
+      if (bond.is_fillet && !is_clear_fillet(bond)) {
+        bond.is_fillet = false;
+        ++draft_.made.statement.cut_fillets;
+      }
+      if (!bond.is_fillet) bond.radius = clear_of_ends(bond, bond.asked, true);
+    }
     limit_.assign(bonds_.size(), std::numeric_limits<double>::infinity());
     for (std::uint32_t b = 0; b < bonds_.size(); ++b)
-      if (bonds_[b].room < bonds_[b].radius) narrow(b, bonds_[b].room);
+      if (bonds_[b].wall) narrow(b, 1, bonds_[b].room);
     keep_apart_on_spheres();
     for (std::uint32_t b = 0; b < bonds_.size(); ++b) keep_from_others(b);
     for (std::uint32_t b = 0; b < bonds_.size(); ++b) finish(b);
@@ -56,79 +49,13 @@ class Necks {
                                                     0.8, 1.2,  0.75, 1.25, 0.7, 1.3,  0.65,
                                                     0.6, 0.55, 0.5,  0.45, 0.4, 0.35, 0.3};
 
-  double edge_of(const NeckBond& bond) const { return draft_.options.neck_edge * least_radius(bond); }
-  double least_radius(const NeckBond& bond) const {
-    const double r = spheres_.r[bond.spheres[0]];
-    return bond.wall ? r : std::min(r, spheres_.r[bond.spheres[1]]);
-  }
+  double edge_of(const NeckBond& bond) const { return draft_.options.neck_edge * bond.ends.least_radius(); }
   /// The centre of the first sphere, or of the second, where the first is in the period.
   Vector<3> center(const NeckBond& bond, std::size_t end) const {
     Vector<3> c = spheres_.center(bond.spheres[end]);
     if (end == 1)
       for (int k = 0; k < 3; ++k) c[k] += bond.step[static_cast<std::size_t>(k)] * draft_.boundary.edges[k];
     return c;
-  }
-
-  void between_spheres() {
-    std::set<std::tuple<std::uint32_t, std::uint32_t, std::array<int, 3>>> known;
-    const Boundary<3>& boundary = draft_.boundary;
-    for (const Bridge& bridge : solids_.bridges) {
-      NeckBond bond;
-      bond.spheres = bridge.spheres;
-      const Vector<3> along = (bridge.rims[1] - bridge.rims[0]).normalized();
-      std::array<std::array<int, 3>, 2> image{};
-      for (std::size_t e = 0; e < 2; ++e) {
-        const double r = spheres_.r[bridge.spheres[e]];
-        const double depth = std::sqrt(r * r - bridge.radius * bridge.radius);
-        const Vector<3> at = bridge.rims[e] + (e == 0 ? -depth : depth) * along -
-                             Vector<3>(spheres_.center(bridge.spheres[e]));
-        for (int k = 0; k < 3; ++k)
-          if (boundary.repeats(k))
-            image[e][static_cast<std::size_t>(k)] =
-                static_cast<int>(std::nearbyint(at[k] / boundary.edges[k]));
-      }
-      for (std::size_t k = 0; k < 3; ++k) bond.step[k] = image[1][k] - image[0][k];
-      if (!known.insert({bond.spheres[0], bond.spheres[1], bond.step}).second) continue;
-      const Vector<3> between = center(bond, 1) - center(bond, 0);
-      bond.distance = between.norm();
-      bond.axis = between / bond.distance;
-      bond.asked = bridge.radius;
-      bonds_.push_back(bond);
-    }
-  }
-
-  void at_walls() {
-    if (solids_.contacts.treatment != ContactTreatment::bridge) return;
-    if (draft_.flat_walls) return at_flat_walls();
-    for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
-      const double r = spheres_.r[i];
-      for (const WallSheet& view : walls_around(solids_.domain, spheres_.center(i))) {
-        if (view.distance - r >= solids_.contacts.gap * r) continue;
-        bonds_.push_back({.spheres = {i, i},
-                          .wall = view.wall,
-                          .axis = view.outward,
-                          .distance = view.distance,
-                          .asked = solids_.bridge_radius * r});
-      }
-    }
-  }
-
-  void at_flat_walls() {
-    const PlanarWalls& walls = *draft_.flat_walls;
-    const FlatFeet feet(std::get<Mesh>(solids_.domain), walls, draft_.sizes.container());
-    for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
-      const double r = spheres_.r[i], asked = solids_.bridge_radius * r;
-      const Vector<3> c = spheres_.center(i);
-      for (const FlatFeet::Foot& foot : feet.near(c, r, (1 + solids_.contacts.gap) * r)) {
-        const FlatPart& part = walls.parts[foot.part];
-        bonds_.push_back({.spheres = {i, i},
-                          .wall = foot.part,
-                          .axis = part.outward,
-                          .distance = (part.origin - c).dot(part.outward),
-                          .asked = asked,
-                          .room = FlatFeet::radius_in(foot, asked, draft_.options.neck_edge * r)});
-      }
-    }
   }
 
   /// Of some shares of a radius the first that ends of periods cut or miss clearly, or the best. Bridges on
@@ -154,6 +81,33 @@ class Necks {
     return best;
   }
 
+  /// Whether ends of periods are half an edge away from what lies between the circles of a fillet, and its
+  /// circles clear of theirs.
+  bool is_clear_fillet(const NeckBond& bond) const {
+    const Boundary<3>& boundary = draft_.boundary;
+    if (!boundary.repeats()) return true;
+    const NeckShape shape = bond.shape(bond.radius);
+    const double edge = edge_of(bond);
+    for (int k = 0; k < 3; ++k) {
+      if (!boundary.repeats(k)) continue;
+      const double along = bond.axis[k], beside = std::sqrt(std::max(0.0, 1 - along * along));
+      const double from = center(bond, 0)[k] - boundary.origin[k];
+      const std::array<double, 2> at = {from + shape.begin * along, from + shape.end * along};
+      double lower = 0, upper = 0;
+      for (std::size_t e = 0; e < 2; ++e) {
+        const double reach = shape.rims[e] * beside + 0.5 * edge;
+        lower = e == 0 ? at[e] - reach : std::min(lower, at[e] - reach);
+        upper = e == 0 ? at[e] + reach : std::max(upper, at[e] + reach);
+      }
+      if (std::floor(lower / boundary.edges[k]) != std::floor(upper / boundary.edges[k])) return false;
+    }
+    for (std::size_t e = 0; e < (bond.wall ? 1u : 2u); ++e)
+      if (clearance_of_ends(boundary, center(bond, e), spheres_.r[bond.spheres[e]],
+                            e == 0 ? bond.axis : Vector<3>(-bond.axis), shape.rims[e], edge) < 1)
+        return false;
+    return true;
+  }
+
   bool is_crossed(const NeckBond& bond, double radius) const {
     for (int k = 0; k < 3; ++k) {
       if (!draft_.boundary.repeats(k)) continue;
@@ -168,91 +122,119 @@ class Necks {
     struct OnSphere {
       Vector<3> direction;
       std::uint32_t bond;
+      std::size_t end;
+      double angle;  ///< half of that under which the circle is seen
     };
     std::vector<std::vector<OnSphere>> on(spheres_.size());
     for (std::uint32_t b = 0; b < bonds_.size(); ++b) {
-      on[bonds_[b].spheres[0]].push_back({bonds_[b].axis, b});
-      if (!bonds_[b].wall) on[bonds_[b].spheres[1]].push_back({-bonds_[b].axis, b});
+      const NeckBond& bond = bonds_[b];
+      const NeckShape shape = bond.shape(bond.radius);
+      for (std::size_t e = 0; e < (bond.wall ? 1u : 2u); ++e)
+        on[bond.spheres[e]].push_back({e == 0 ? bond.axis : Vector<3>(-bond.axis), b, e,
+                                       std::asin(shape.rims[e] / spheres_.r[bond.spheres[e]])});
     }
     for (std::size_t i = 0; i < on.size(); ++i)
       for (std::size_t a = 0; a < on[i].size(); ++a)
         for (std::size_t b = 0; b < a; ++b) {
-          const NeckBond &one = bonds_[on[i][a].bond], &other = bonds_[on[i][b].bond];
+          const OnSphere &one = on[i][a], &other = on[i][b];
           const double r = spheres_.r[i];
-          const double apart = std::atan2(on[i][a].direction.cross(on[i][b].direction).norm(),
-                                          on[i][a].direction.dot(on[i][b].direction));
-          const double alpha = std::asin(one.radius / r), beta = std::asin(other.radius / r);
-          const double room = apart - 0.5 * std::max(edge_of(one), edge_of(other)) / r;
-          if (alpha + beta <= room) continue;
-          const double share = room / (alpha + beta);
-          narrow(on[i][a].bond, share > 0 ? r * std::sin(share * alpha) : 0);
-          narrow(on[i][b].bond, share > 0 ? r * std::sin(share * beta) : 0);
+          const double apart =
+              std::atan2(one.direction.cross(other.direction).norm(), one.direction.dot(other.direction));
+          const double both = one.angle + other.angle;
+          const double room =
+              apart - 0.5 * std::max(edge_of(bonds_[one.bond]), edge_of(bonds_[other.bond])) / r;
+          if (both <= room) continue;
+          const double share = std::max(0.0, room / both);
+          for (const OnSphere* each : {&one, &other})
+            narrow(each->bond, each->end, r * std::sin(share * each->angle));
         }
   }
 
   /// A quarter of an edge stays between a neck and spheres that it does not join.
   void keep_from_others(std::uint32_t b) {
     const NeckBond& bond = bonds_[b];
-    const double half = 0.5 * bond.distance;
+    const double half = 0.5 * bond.ends.distance, radius = bond.shape(bond.radius).largest_radius();
     const Vector<3> middle = center(bond, 0) + half * bond.axis;
-    const double reach = half + draft_.sizes.largest_radius() + bond.radius + edge_of(bond);
+    const double reach = half + draft_.sizes.largest_radius() + radius + edge_of(bond);
     grid_.for_each_near(draft_.boundary.wrap(middle), reach, [&](std::uint32_t j, const Vector<3>& d) {
       const double along = d.dot(bond.axis), r = spheres_.r[j];
       const double beside = (d - along * bond.axis).norm();
       if (beside < 1e-6 * r) return;  // one of its own
       const double outside = std::max(0.0, std::abs(along) - half);
       const double room = std::hypot(beside, outside) - r - 0.25 * edge_of(bond);
-      if (room < bond.radius) narrow(b, room);
+      if (room < radius)
+        for (const std::size_t end : {0, 1}) narrow(b, end, room);
     });
   }
 
-  void narrow(std::uint32_t b, double radius) {
-    if (!(radius > least_share * bonds_[b].asked))
+  /// Lets the circle at one end of a neck have at most this radius.
+  void narrow(std::uint32_t b, std::size_t end, double rim) {
+    const NeckBond& bond = bonds_[b];
+    if (bond.shape(bond.radius).rims[end] <= rim) return;
+    const double radius = !bond.is_fillet ? rim
+                          : rim > 0       ? radius_for_rim(bond.ends, end, rim, bond.radius)
+                                          : 0;
+    if (!(radius > least_share * bond.asked))
       throw Error(ErrorCode::bad_argument,
                   fmt::format("a bridge at sphere {} has no room between others; a smaller radius of bridges "
                               "or a smaller gap makes room",
-                              bonds_[b].spheres[0]));
+                              bond.spheres[0]));
     limit_[b] = std::min(limit_[b], radius);
   }
 
   void finish(std::uint32_t b) {
     NeckBond& bond = bonds_[b];
-    if (limit_[b] < bond.radius) bond.radius = clear_of_ends(bond, limit_[b], false);
-    DraftNeck neck;
+    if (limit_[b] < bond.radius)
+      bond.radius = bond.is_fillet ? limit_[b] : clear_of_ends(bond, limit_[b], false);
+    DraftNeck neck{bond.shape(bond.radius)};
     neck.bond = b;
     neck.spheres = bond.spheres;
     neck.wall = bond.wall;
     neck.axis = bond.axis;
     neck.across = bond.axis.unitOrthogonal();
-    neck.radius = bond.radius;
-    neck.distance = bond.distance;
-    const double a = neck.radius, r = spheres_.r[bond.spheres[0]];
-    neck.begin = std::sqrt(r * r - a * a);
-    neck.volume = -cap_volume(r, r - neck.begin);
-    neck.end = bond.distance;
-    if (!bond.wall) {
-      const double other = spheres_.r[bond.spheres[1]], depth = std::sqrt(other * other - a * a);
-      neck.end -= depth;
-      neck.volume -= cap_volume(other, other - depth);
+    neck.distance = bond.ends.distance;
+    neck.volume = neck.NeckShape::volume() - cap_volume(bond.ends.first, bond.ends.first - neck.begin);
+    if (bond.ends.second) {
+      neck.volume -= cap_volume(*bond.ends.second, *bond.ends.second - (neck.distance - neck.end));
     } else {
-      neck.volume -= volume_before_wall(solids_.domain, *bond.wall, a);
+      neck.volume -= volume_before_wall(solids_.domain, *bond.wall, neck);
     }
-    const double height = neck.end - neck.begin;
-    neck.volume += pi * a * a * height;
-    neck.count = draft_.sizes.neck_count(
-        a, least_radius(bond), height - (bond.wall ? rise_of_wall(solids_.domain, *bond.wall, a) : 0));
-    neck.edge = 2 * pi * a / static_cast<double>(neck.count);
-    neck.rows = static_cast<std::size_t>(std::max(1.0, std::nearbyint(height / (0.87 * neck.edge))));
+    divide(neck, bond);
     place_images(neck, bond);
     ConformingSurface& made = draft_.made;
-    made.statement.contact_area += pi * a * a;
-    made.necks.push_back({bond.spheres[0], {}, bond.wall.value_or(0), a});
+    made.statement.contact_area += pi * neck.radius * neck.radius;
+    made.necks.push_back({bond.spheres[0], {}, bond.wall.value_or(0), neck.radius});
     if (!bond.wall) made.necks.back().other = bond.spheres[1];
-    if (a < bond.asked) {
+    if (neck.radius < bond.asked) {
       ++made.statement.shrunk_necks;
-      made.statement.largest_shrink = std::max(made.statement.largest_shrink, 1 - a / bond.asked);
+      made.statement.largest_shrink = std::max(made.statement.largest_shrink, 1 - neck.radius / bond.asked);
     }
-    made.statement.widened_necks += a > bond.asked;
+    made.statement.widened_necks += neck.radius > bond.asked;
+  }
+
+  /// How many points and rows of triangles the side has.
+  void divide(DraftNeck& neck, const NeckBond& bond) const {
+    const double rise = bond.wall ? rise_of_wall(solids_.domain, *bond.wall, neck.rims[1]) : 0;
+    const double least = bond.ends.least_radius();
+    if (neck.is_fillet()) {
+      // Rows turn by this many radians for each unit of the edge over the radius, and are at least so high
+      // over their edges.
+      constexpr double turn_per_edge = 5.5, edge_per_row = 4;
+      const auto [from, to] = neck.turns();
+      const double length = neck.length(), asked = edge_of(bond);
+      neck.rows = static_cast<std::size_t>(
+          std::max({3.0, std::ceil((to - from) / (turn_per_edge * draft_.options.neck_edge)),
+                    std::ceil(length / (0.87 * asked))}));
+      const double row = length / static_cast<double>(neck.rows) * (1 - rise / (neck.end - neck.begin));
+      neck.count = static_cast<std::size_t>(
+          std::max(6.0, std::ceil(2 * pi * neck.largest_radius() / std::min(asked, edge_per_row * row))));
+    } else {
+      neck.count = draft_.sizes.neck_count(neck.radius, least, neck.end - neck.begin - rise);
+    }
+    neck.edge = 2 * pi * neck.largest_radius() / static_cast<double>(neck.count);
+    if (!neck.is_fillet())
+      neck.rows = static_cast<std::size_t>(
+          std::max(1.0, std::nearbyint((neck.end - neck.begin) / (0.87 * neck.edge))));
   }
 
   /// A neck for every image of it of which a part is in the domain.
@@ -265,7 +247,7 @@ class Necks {
       if (!boundary.repeats(k)) continue;
       const auto at = static_cast<std::size_t>(k);
       const double reach = 0.5 * (neck.end - neck.begin) * std::abs(neck.axis[k]) +
-                           neck.radius * std::sqrt(std::max(0.0, 1 - neck.axis[k] * neck.axis[k]));
+                           neck.largest_radius() * std::sqrt(std::max(0.0, 1 - neck.axis[k] * neck.axis[k]));
       const double from = (middle[k] - boundary.origin[k]) / boundary.edges[k],
                    share = reach / boundary.edges[k];
       lower[at] = -static_cast<int>(std::floor(from + share));
@@ -326,13 +308,13 @@ class Necks {
         const double t = 2 * pi *
                          (static_cast<double>(k) + (e == 1 ? 0.5 * static_cast<double>(neck.rows) : 0.0)) /
                          static_cast<double>(neck.count);
-        const Vector<3> beside = neck.radius * (std::cos(t) * neck.across + std::sin(t) * neck.around());
+        const Vector<3> beside = neck.rims[e] * (std::cos(t) * neck.across + std::sin(t) * neck.around());
         const Vector<3> p =
             e == 0 ? Vector<3>(neck.center + neck.begin * neck.axis + beside)
             : !neck.wall
                 ? Vector<3>(draft_.pieces[neck.pieces[1]].piece.center - other_depth * neck.axis + beside)
                 : foot_of(draft_, neck, beside);
-        neck.rims[e].push_back(draft_.add_vertex(p, neck.edge));
+        neck.rim_points[e].push_back(draft_.add_vertex(p, neck.edge));
       }
   }
 
@@ -342,13 +324,13 @@ class Necks {
       Circle circle;
       circle.kind = Circle::Kind::neck;
       circle.neck = n;
-      circle.radius = neck.radius;
+      circle.radius = neck.rims[e];
       circle.edge = neck.edge;
       circle.normal = e == 0 ? neck.axis : Vector<3>(-neck.axis);
       circle.depth = e == 0 ? neck.begin : neck.distance - neck.end;
       if (!neck.is_cut) {
         circle.is_whole = true;
-        circle.chains = {neck.rims[e]};
+        circle.chains = {neck.rim_points[e]};
         if (e == 1) std::ranges::reverse(circle.chains[0]);
       }
       auto& circles = draft_.pieces[neck.pieces[e]].circles;
@@ -368,18 +350,39 @@ class Necks {
 }  // namespace
 
 Vector<3> foot_of(const SurfaceDraft& draft, const DraftNeck& neck, const Vector<3>& beside) {
-  Vector<3> p = neck.center + beside + neck.distance * neck.axis;
+  Vector<3> p =
+      neck.center + beside +
+      (neck.distance - rise_at_wall(draft.solids.domain, *neck.wall, neck.axis, beside)) * neck.axis;
   if (const auto* box = std::get_if<Box>(&draft.solids.domain)) {
     const int k = static_cast<int>(*neck.wall / 2);
     p[k] = *neck.wall % 2 == 0 ? box->corner[k] : box->corner[k] + box->size[k];
-  } else if (const double radius = radius_of_wall(draft.solids.domain, *neck.wall); radius > 0) {
-    // Where lines along the neck's axis, which is a radius of the wall, meet it.
-    const auto* cylinder = std::get_if<Cylinder>(&draft.solids.domain);
-    const double x =
-        cylinder != nullptr ? beside.dot(cylinder->axis.normalized().cross(neck.axis)) : beside.norm();
-    p += (std::sqrt(radius * radius - x * x) - radius) * neck.axis;
   }
   return p;
+}
+
+RoundSurface shape_of_side(const SurfaceDraft& draft, const DraftNeck& neck) {
+  RoundSurface side{
+      .kind = RoundSurface::Kind::cylinder, .center = neck.center, .axis = neck.axis, .radius = neck.radius};
+  if (!neck.is_fillet()) return side;
+  side.kind = RoundSurface::Kind::torus;
+  side.center += neck.waist * neck.axis;
+  side.radius = neck.spine();
+  side.tube = neck.tube;
+  if (!neck.wall) return side;
+  side.bend = {.wall_radius = radius_of_wall(draft.solids.domain, *neck.wall),
+               .across = across_wall(draft.solids.domain, neck.axis),
+               .from = neck.begin - neck.waist,
+               .height = neck.end - neck.begin};
+  return side;
+}
+
+Vector<3> point_on_side(const SurfaceDraft& draft, const DraftNeck& neck, double share, double angle) {
+  const NeckShape::Ring ring = neck.ring(share);
+  const Vector<3> beside = ring.radius * (std::cos(angle) * neck.across + std::sin(angle) * neck.around());
+  double rise = 0;
+  if (neck.wall) rise = rise_at_wall(draft.solids.domain, *neck.wall, neck.axis, beside);
+  const double height = neck.begin + (ring.height - neck.begin) * (1 - rise / (neck.end - neck.begin));
+  return neck.center + height * neck.axis + beside;
 }
 
 void add_necks(SurfaceDraft& draft) { Necks(draft).make(); }

@@ -56,9 +56,13 @@ class Mesher {
 
  private:
   [[noreturn]] static void fail(const char* why) {
-    throw Error(ErrorCode::bad_argument,
-                std::string("circles on a surface are too near to each other for edges of this size (") +
-                    why + "); smaller edges make room");
+    throw Error(
+        ErrorCode::bad_argument,
+        std::string("circles where bridges, caps or ends of periods cut a sphere or wall nearly touch "
+                    "each other (") +
+            why +
+            "); a smaller gap or narrower bridges keep them apart, or smaller edges resolve "
+            "what is between");
   }
   bool on_sphere() const { return patch_.surface == Delaunay::Surface::sphere; }
 

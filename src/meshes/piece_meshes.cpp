@@ -147,20 +147,16 @@ namespace {
 /// Triangles between two whole circles, row by row.
 void mesh_whole_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t patch) {
   const std::size_t count = neck.count;
-  std::vector<std::uint32_t> before = neck.rims[0];
+  std::vector<std::uint32_t> before = neck.rim_points[0];
   for (std::size_t row = 1; row <= neck.rows; ++row) {
-    std::vector<std::uint32_t> next = neck.rims[1];
+    std::vector<std::uint32_t> next = neck.rim_points[1];
     if (row < neck.rows)
       for (std::size_t k = 0; k < count; ++k) {
         // Along the line of the neck's side that is half an edge on in each row.
         const double share = static_cast<double>(row) / static_cast<double>(neck.rows);
         const double half = std::numbers::pi / static_cast<double>(count);
         const double t = 2 * half * static_cast<double>(k) + half * static_cast<double>(row);
-        const Vector<3> beside = neck.radius * (std::cos(t) * neck.across + std::sin(t) * neck.around());
-        const double lower = (draft.made.vertices[neck.rims[0][0]] - neck.center).dot(neck.axis);
-        const double upper = (draft.made.vertices[neck.rims[1][0]] - neck.center).dot(neck.axis);
-        next[k] = draft.add_vertex(neck.center + beside + (lower + share * (upper - lower)) * neck.axis,
-                                   draft.made.size[neck.rims[0][0]]);
+        next[k] = draft.add_vertex(point_on_side(draft, neck, share, t), neck.edge);
       }
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t l = (k + 1) % count;
@@ -252,10 +248,7 @@ void mesh_necks(SurfaceDraft& draft) {
     const std::uint32_t patch = draft.add_patch({.kind = SurfacePatch::Kind::neck,
                                                  .index = neck.bond,
                                                  .regions = {draft.region_of_neck(n), 0},
-                                                 .shape = {.kind = RoundSurface::Kind::cylinder,
-                                                           .center = neck.center,
-                                                           .axis = neck.axis,
-                                                           .radius = neck.radius}});
+                                                 .shape = shape_of_side(draft, neck)});
     if (neck.is_cut) {
       mesh_cut_neck(draft, neck, patch);
     } else {

@@ -7,7 +7,36 @@
 
 namespace bernal {
 
+namespace {
+
+/// For a torus that a wall bends: to first order, by the gradient of the distance of what p is before
+/// bending.
+DistanceFrom distance_from_bent(const RoundSurface& surface, const Vector<3>& p) {
+  const RoundSurface::Bend& bend = surface.bend;
+  const Vector<3> from = p - surface.center;
+  const double along = from.dot(surface.axis), squared = bend.wall_radius * bend.wall_radius;
+  const Vector<3> beside = from - along * surface.axis;
+  const Vector<3> slope = bend.across.isZero() ? beside : Vector<3>(beside.dot(bend.across) * bend.across);
+  const double depth = std::sqrt(std::max(0.0, squared - slope.squaredNorm()));
+  if (!(depth > 0)) return {};
+  const double scale = 1 - (bend.wall_radius - depth) / bend.height;
+  RoundSurface straight = surface;
+  straight.bend = {};
+  const double before = (along - bend.from) / scale;
+  const DistanceFrom found =
+      distance_from(straight, surface.center + beside + (bend.from + before) * surface.axis);
+  // The height before bending grows by 1 / scale along the axis, and across it as the wall rises.
+  const double rising = found.direction.dot(surface.axis) / scale;
+  const Vector<3> gradient = found.direction - found.direction.dot(surface.axis) * surface.axis +
+                             rising * (surface.axis + before / (bend.height * depth) * slope);
+  const double length = gradient.norm();
+  return length > 0 ? DistanceFrom{found.distance / length, gradient / length} : DistanceFrom{};
+}
+
+}  // namespace
+
 DistanceFrom distance_from(const RoundSurface& surface, const Vector<3>& p) {
+  if (surface.bend.wall_radius > 0) return distance_from_bent(surface, p);
   const Vector<3> from = p - surface.center;
   const auto away = [](const Vector<3>& d, double length) {
     return length > 0 ? Vector<3>(d / length) : Vector<3>(Vector<3>::Zero());

@@ -13,13 +13,21 @@ struct RoundSurface {
     plane,     ///< through `center`, with `axis` as its normal
     sphere,    ///< about `center`
     cylinder,  ///< about the line through `center` along `axis`
-    torus,     ///< of tubes about the circle of that radius around `axis`, in the plane through `center`
+    torus,     ///< of a tube about the circle of that radius around `axis`, in the plane through `center`
   };
   Kind kind = Kind::flat;
   Vector<3> center = Vector<3>::Zero();
   Vector<3> axis = Vector<3>::UnitZ();  ///< unit length
   double radius = 0;
   double tube = 0;  ///< of a torus: the radius of its tube
+  /// Of a torus that a round wall bends: heights above `from` are scaled by 1 - rise / height, where the wall
+  /// rises by R - sqrt(R² - x²) at the distance x along `across`, or from the axis where that is zero.
+  struct Bend {
+    double wall_radius = 0;  ///< 0: none
+    Vector<3> across = Vector<3>::Zero();
+    double from = 0, height = 0;
+  };
+  Bend bend = {};
 
   bool is_round() const { return kind != Kind::flat && kind != Kind::plane; }
 };

@@ -82,6 +82,19 @@ RoundSurface surface_of(const VolumeMesh& mesh, std::uint32_t t) {
   return {.kind = RoundSurface::Kind::plane, .center = p, .axis = (q - p).cross(r - p).normalized()};
 }
 
+/// Where fillets begin they touch spheres and walls, so that distances from both do not tell where that
+/// circle is: they become cylinders about their axes through the vertex.
+void part_from_fillets(std::vector<RoundSurface>& surfaces, const Vector<3>& vertex) {
+  if (surfaces.size() < 2) return;
+  for (RoundSurface& surface : surfaces) {
+    if (surface.kind != RoundSurface::Kind::torus) continue;
+    const Vector<3> from = vertex - surface.center;
+    surface.kind = RoundSurface::Kind::cylinder;
+    surface.radius = (from - from.dot(surface.axis) * surface.axis).norm();
+    surface.bend = {};
+  }
+}
+
 /// For each vertex a patch that is a sphere on which it lies, of those inside of spheres and around them.
 std::vector<std::uint32_t> spheres_of_vertices(const VolumeMesh& mesh) {
   std::vector<std::uint32_t> of(mesh.vertices.size(), none);
@@ -337,6 +350,7 @@ CurvedEdges make_second_order(VolumeMesh& mesh) {
     } else {
       continue;
     }
+    part_from_fillets(surfaces, mesh.vertices[a]);
     std::optional<Vector<3>> there = point_on_all(surfaces, mesh.middles[k]);
     if (!there) continue;
     for (int axis = 0; axis < 3; ++axis)

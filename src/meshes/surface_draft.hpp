@@ -10,6 +10,7 @@
 #include "meshes/conforming_surface.hpp"
 #include "meshes/flat_walls.hpp"
 #include "meshes/mesh_sizes.hpp"
+#include "meshes/neck_shape.hpp"
 #include "meshes/patch_mesh.hpp"
 
 namespace bernal {
@@ -60,8 +61,10 @@ struct NeckTrace {
   bool is_closed = false;  ///< does not repeat its first point
 };
 
-/// A neck from a sphere to another, or to a wall; what of it is in the domain, in one of its images.
-struct DraftNeck {
+/// A neck from a sphere to another, or to a wall; what of it is in the domain, in one of its images. Heights
+/// of its shape are those above `center` along `axis`. At a round wall they are scaled by 1 - rise / (end -
+/// begin), with that of the wall above its tangent plane there, so that a fillet touches it everywhere.
+struct DraftNeck : NeckShape {
   /// That it begins and ends at, absent where these do not reach into the domain; the second only between
   /// spheres.
   std::array<std::uint32_t, 2> pieces = {Delaunay::none, Delaunay::none};
@@ -73,15 +76,15 @@ struct DraftNeck {
   bool is_cut = false;                                               ///< at an end of a period
   Vector<3> center = Vector<3>::Zero();                              ///< of the first sphere
   Vector<3> axis = Vector<3>::UnitZ(), across = Vector<3>::UnitX();  ///< unit, perpendicular
-  double radius = 0;
-  double begin = 0, end = 0;                            ///< of its side along the axis, from the centre
-  double distance = 0;                                  ///< of the centres, or of the centre from the wall
-  double edge = 0;                                      ///< of its circles
-  std::size_t count = 0;                                ///< points of a circle, if not cut
-  std::size_t rows = 1;                                 ///< of triangles from circle to circle, if not cut
-  std::array<std::vector<std::uint32_t>, 2> rims = {};  ///< both run alike, the second turned by half an edge
+  double distance = 0;    ///< of the centres, or of the centre from the wall
+  double edge = 0;        ///< of its circles
+  std::size_t count = 0;  ///< points of a circle, if not cut
+  std::size_t rows = 1;   ///< of triangles from circle to circle, if not cut
+  /// Both run alike, the second turned by half an edge a row.
+  std::array<std::vector<std::uint32_t>, 2> rim_points = {};
   std::vector<NeckTrace> traces = {};
-  double volume = 0;  ///< between the spheres, in closed form, of all its images together
+  /// Between the spheres, in closed form, of all its images together.
+  double volume = 0;
 
   Vector<3> around() const { return axis.cross(across); }
 };
@@ -210,6 +213,10 @@ double clearance_of_ends(const Boundary<3>&, const Vector<3>& center, double sph
                          const Vector<3>& direction, double radius, double edge);
 /// The point of a neck's wall that stands over a point of its section, given from its axis.
 Vector<3> foot_of(const SurfaceDraft&, const DraftNeck&, const Vector<3>& beside);
+/// The point of a neck's side at this share of its meridian.
+Vector<3> point_on_side(const SurfaceDraft&, const DraftNeck&, double share, double angle);
+/// What the side of a neck is.
+RoundSurface shape_of_side(const SurfaceDraft&, const DraftNeck&);
 /// Triangles of the sides of necks.
 void mesh_necks(SurfaceDraft&);
 /// The patch of a piece's sphere.

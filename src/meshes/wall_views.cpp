@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <boost/math/quadrature/gauss.hpp>
+
 #include "solids/solids.hpp"
 
 namespace bernal {
@@ -43,9 +45,24 @@ double rise_of_wall(const Domain& domain, std::uint32_t wall, double radius) {
   return of_wall > 0 ? radius * radius / (of_wall + std::sqrt(of_wall * of_wall - radius * radius)) : 0;
 }
 
-double volume_before_wall(const Domain& domain, std::uint32_t wall, double radius) {
+Vector<3> across_wall(const Domain& domain, const Vector<3>& axis) {
+  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  return cylinder != nullptr ? cylinder->axis.normalized().cross(axis) : Vector<3>(Vector<3>::Zero());
+}
+
+double rise_at_wall(const Domain& domain, std::uint32_t wall, const Vector<3>& axis,
+                    const Vector<3>& beside) {
+  if (!(radius_of_wall(domain, wall) > 0)) return 0;
+  const bool is_ball = std::holds_alternative<Sphere>(domain);
+  return rise_of_wall(domain, wall, is_ball ? beside.norm() : beside.dot(across_wall(domain, axis)));
+}
+
+namespace {
+
+/// The integral of the rise of a round wall over a disc. Of a cylinder of radius R that of R - sqrt(R² - x²),
+/// by Gauss and Chebyshev's rule.
+double rise_over_disc(const Domain& domain, std::uint32_t wall, double radius) {
   const double of_wall = radius_of_wall(domain, wall), squared = radius * radius;
-  if (!(of_wall > 0)) return 0;
   if (std::holds_alternative<Sphere>(domain)) {
     const double rise = rise_of_wall(domain, wall, radius);
     return std::numbers::pi * squared * rise - cap_volume(of_wall, rise);
@@ -57,6 +74,22 @@ double volume_before_wall(const Domain& domain, std::uint32_t wall, double radiu
     sum += s * s * (x * x / (of_wall + std::sqrt(of_wall * of_wall - x * x)));
   }
   return 2 * squared * std::numbers::pi / (nodes + 1) * sum;
+}
+
+}  // namespace
+
+double volume_before_wall(const Domain& domain, std::uint32_t wall, const NeckShape& shape) {
+  if (!(radius_of_wall(domain, wall) > 0)) return 0;
+  if (!shape.is_fillet()) return rise_over_disc(domain, wall, shape.radius);
+  using Rule = boost::math::quadrature::gauss<double, 30>;
+  const auto [from, to] = shape.turns();
+  return Rule::integrate(
+             [&](double turn) {
+               const double radius = shape.spine() - shape.tube * std::cos(turn);
+               return rise_over_disc(domain, wall, radius) * shape.tube * std::cos(turn);
+             },
+             from, to) /
+         (shape.end - shape.begin);
 }
 
 }  // namespace bernal

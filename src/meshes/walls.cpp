@@ -35,9 +35,9 @@ void add_circles_of(const SurfaceDraft& draft, std::uint32_t face, bool is_end, 
   for (const DraftNeck& neck : draft.necks) {
     if (neck.wall != face) continue;
     if (as_holes) {
-      part.add_hole(neck.rims[1]);
+      part.add_hole(neck.rim_points[1]);
     } else {
-      part.add_chain(neck.rims[1], true);
+      part.add_chain(neck.rim_points[1], true);
     }
   }
 }
@@ -296,7 +296,7 @@ void mesh_ball(SurfaceDraft& draft, const Sphere& sphere) {
   for (const DraftNeck& neck : draft.necks) {
     if (!neck.wall) continue;
     auto& circle = patch.circles.emplace_back();
-    for (const std::uint32_t id : neck.rims[1]) {
+    for (const std::uint32_t id : neck.rim_points[1]) {
       circle.push_back(static_cast<std::uint32_t>(ids.size()));
       ids.push_back(id);
       patch.points.push_back(draft.made.vertices[id] - sphere.center);
@@ -311,7 +311,7 @@ void mesh_ball(SurfaceDraft& draft, const Sphere& sphere) {
     const Vector<3> p = sphere.radius * corner;
     const bool is_free = std::ranges::all_of(draft.necks, [&](const DraftNeck& neck) {
       const Vector<3> foot = sphere.radius * neck.axis;
-      return !neck.wall || (p - foot).norm() > 2 * neck.radius;
+      return !neck.wall || (p - foot).norm() > 2 * neck.rims[1];
     });
     if (is_free) patch.starts.push_back(p);
   }

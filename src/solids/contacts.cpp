@@ -134,6 +134,7 @@ std::string contact_text(const ContactReport& report) {
           grouped(report.changed), number_of(report.spheres, "radius", "radii"), report.largest_change,
           porosity, 1 + report.gap);
     case ContactTreatment::bridge:
+    case ContactTreatment::fillet:
       return fmt::format(
           "{}, {} {:.6g} in all where only points touched, {}, {}; no angle at their rims below {:.1f} "
           "degrees{}",

@@ -117,8 +117,7 @@ CutOut cut_out(const Solids& whole, const Bounds<3>& given, double gap) {
   // The upper faces where the corner and the size of the box say that they are.
   const Box box{.corner = given.lower, .size = given.upper - given.lower};
   const Bounds<3> bounds{.lower = box.corner, .upper = box.corner + box.size};
-  if (whole.contacts.treatment == ContactTreatment::bridge ||
-      whole.contacts.treatment == ContactTreatment::cap)
+  if (joins(whole.contacts.treatment) || whole.contacts.treatment == ContactTreatment::cap)
     refuse_cut("‹cut› takes contact gap or shrink: bridges and caps are not cut");
   CutOut made{.solids = {.spheres = Spheres<dynamic>(3),
                          .domain = box,

@@ -233,7 +233,7 @@ void require_inside(const NearWall& wall) {
 }
 
 std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& domain,
-                               const std::vector<Bond>& bonds, double relative_radius,
+                               const std::vector<Bond>& bonds, const SolidsOptions& options,
                                ContactReport& report) {
   const Spheres<3> spheres = given.in<3>();
   const Boundary<3> boundary = boundary_of<3>(domain);
@@ -250,7 +250,10 @@ std::vector<Bridge> bridges_of(const Spheres<dynamic>& given, const Domain& doma
                               "cannot join; contact gap or cap makes room",
                               bond.first, bond.second, -bond.gap));
     const double ri = spheres.r[bond.first], rj = spheres.r[bond.second];
-    const double a = relative_radius * std::min(ri, rj);
+    double a = options.bridge_radius * std::min(ri, rj);
+    if (options.bridge_angle > 0)
+      a = std::min(std::max(ri, rj) * std::sin(options.bridge_angle * std::numbers::pi / 180),
+                   0.7 * std::min(ri, rj));
     const double rim_i = std::sqrt(ri * ri - a * a), rim_j = std::sqrt(rj * rj - a * a);
     const Vector<3> c = spheres.center(bond.first);
     const Bridge bridge{.spheres = {bond.first, bond.second},
@@ -297,21 +300,26 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
                  const Monitor& monitor) {
   Solids made{.spheres = spheres, .domain = domain, .pieces = {}, .bridges = {}, .contacts = {}};
   made.bridge_radius = options.bridge_radius;
+  made.bridge_angle = options.bridge_angle;
   const bool shrinks =
       options.contact == ContactTreatment::gap || options.contact == ContactTreatment::shrink;
   if (shrinks)
     made.contacts = shrink_contacts(made.spheres, domain, options.contact, options.gap, false, monitor);
   std::vector<Bridge> bridges;
   std::vector<WallFoot> feet;
-  if (options.contact == ContactTreatment::bridge) {
+  if (joins(options.contact)) {
     ContactReport unused;
     const std::vector<Bond> bonds = bonds_of(made.spheres, domain, options.gap);
-    bridges = bridges_of(made.spheres, domain, bonds, options.bridge_radius, unused);
-    if (has_walls(domain))
+    bridges = bridges_of(made.spheres, domain, bonds, options, unused);
+    if (has_walls(domain)) {
+      double foot = options.bridge_angle > 0 ? std::sin(options.bridge_angle * std::numbers::pi / 180)
+                                             : options.bridge_radius;
+      if (options.contact == ContactTreatment::fillet) foot *= 1.2;  // where it is widest
       for (const NearWall& wall : near_walls(made.spheres, domain, options.gap, nullptr)) {
         require_inside(wall);
-        feet.push_back({wall.sphere, options.bridge_radius * made.spheres.r[wall.sphere]});
+        feet.push_back({wall.sphere, foot * made.spheres.r[wall.sphere]});
       }
+    }
   }
   made.shells = scaled(options.shells, spheres, made.spheres);
   const ClearEnds ends = with_clear_ends(with_shells(made.spheres, made.shells), domain, bridges, feet);
@@ -337,8 +345,8 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   if (options.contact == ContactTreatment::none) return made;
   const std::vector<Bond> bonds = bonds_of(made.spheres, made.domain, options.gap);
   report.pairs = bonds.size();
-  if (options.contact == ContactTreatment::bridge) {
-    made.bridges = bridges_of(made.spheres, made.domain, bonds, options.bridge_radius, report);
+  if (joins(options.contact)) {
+    made.bridges = bridges_of(made.spheres, made.domain, bonds, options, report);
     report.walls = near_walls(made.spheres, made.domain, options.gap, nullptr).size();
   } else {
     const auto caps = caps_of(made.spheres, made.domain, bonds, report);

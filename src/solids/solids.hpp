@@ -45,6 +45,7 @@ struct Solids {
   /// infinite without periods.
   double end_distance = 0;
   double bridge_radius = 0;  ///< as asked for, over the radius of the smaller sphere
+  double bridge_angle = 0;   ///< or so, as SolidsOptions
   InnerSpheres shells = {};  ///< which shrink as their spheres do
   /// Whether the domain is a box cut out of a packing: without periods, and its faces cut spheres.
   bool is_cut = false;
@@ -54,6 +55,9 @@ struct SolidsOptions {
   ContactTreatment contact = ContactTreatment::none;
   double gap = 0.01;
   double bridge_radius = 0.2;
+  /// Degrees, instead of the radius: the least half-angle under which spheres see the circles where bridges
+  /// begin. 0: none.
+  double bridge_angle = 0;
   InnerSpheres shells = {};
 };
 
@@ -63,7 +67,8 @@ struct SolidsOptions {
 /// third spheres and with each other are found in double.
 ///
 /// cap: for spheres closer than the gap, caps with heights in the ratio of their radii, which leave (ri + rj)
-/// gap between the flat faces; at walls they leave r gap. bridge: between spheres closer than the gap.
+/// gap between the flat faces; at walls they leave r gap. bridge: between spheres closer than the gap; of a
+/// fillet the cylinder in it.
 ///
 /// Precondition: three dimensions, diameters not above the periods. Throws Error{bad_argument}, Cancelled.
 /// Cost: O(N).

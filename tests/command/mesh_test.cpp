@@ -151,6 +151,32 @@ diameter = 0.24
   }
 }
 
+TEST(MeshCommand, FilletsHoldTheStatedPorosity) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Packed result;
+  const auto mesh = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"mesh",      result.out(), "--to",
+                                      "vtu",       "-o",         result.folder / "bed.vtu",
+                                      "--contact", "fillet",     "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ended ended = bernal(words);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  };
+  const auto report = mesh({"--regions", "all"});
+  EXPECT_GT(report["necks"], 0);
+  EXPECT_EQ(report["cut_fillets"], 0);
+  EXPECT_GE(report["least_sicn"], 0.1);
+  EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 0.01);
+  EXPECT_NEAR(report["contact_area"].get<double>(),
+              report["necks"].get<double>() * 3.14159265358979 * 0.1 * 0.1, 1e-9);
+  // A waist of 0.2 radii is seen under more than 12 degrees.
+  EXPECT_LT(mesh({"--bridge-angle", "10"})["contact_area"], report["contact_area"]);
+  expect_refused_in_one_line(bernal({"mesh", result.out(), "--to", "gmsh", "-o", result.folder / "a.msh",
+                                     "--bridge-angle", "10", "--bridge-radius", "0.2"}),
+                             {"bridge_radius", "bridge_angle"});
+}
+
 /// How many triangles of an OBJ file have each edge, and the names of its groups.
 struct ReadSurface {
   std::map<std::pair<int, int>, int> edges;

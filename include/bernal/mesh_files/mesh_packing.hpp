@@ -34,7 +34,8 @@ struct MeshFileOptions {
   ContactTreatment contact = ContactTreatment::bridge;
   double gap = 0.01;           ///< contacts nearer than this are treated: over the sum of the radii, at walls
                                ///< over the radius
-  double bridge_radius = 0.2;  ///< of the smaller radius
+  double bridge_radius = 0.2;  ///< of the smaller radius; of fillets at their waists
+  double bridge_angle = 0;     ///< instead, in degrees: the least half-angle under which spheres see bridges
   double sphere_edge = 0.3;    ///< longest edges on spheres
   double neck_edge = 0.15;     ///< edges where necks begin, of the smaller radius
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
@@ -75,6 +76,8 @@ struct BedMeshReport {
   double least_triangle_angle = 0;  ///< in degrees
   Vector<3> place_of_least_angle = Vector<3>::Zero();
   std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
+  double largest_shrink = 0;      ///< of their radii, over the one asked for
+  std::size_t cut_fillets = 0;    ///< that are cylinders, as ends of periods would cut or nearly touch them
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
   std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
   std::size_t clipped = 0;        ///< spheres that the faces of a box cut out of the packing clip
@@ -107,7 +110,7 @@ struct BedMeshReport {
   double porosity = 0;         ///< in closed form, contacts as they were treated
   std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed; nothing for a part
   double meshed_porosity = 0;  ///< of the mesh
-  double contact_area = 0;     ///< cross-sections of necks, flat faces of caps
+  double contact_area = 0;     ///< least cross-sections of necks, flat faces of caps
   struct Group {
     std::string name;
     double volume = 0;                    ///< of the mesh

@@ -10,6 +10,12 @@ enum class ContactTreatment {
   shrink,  ///< all spheres shrink by one factor, until the gap is kept
   bridge,  ///< cylinders join spheres that are closer to each other than the gap
   cap,     ///< caps are cut off where spheres are closer than the gap to each other or to a wall
+  fillet,  ///< as bridge, by parts of tori that touch both; in meshes of beds
 };
+
+/// Whether spheres nearer than the gap are joined.
+constexpr bool joins(ContactTreatment treatment) {
+  return treatment == ContactTreatment::bridge || treatment == ContactTreatment::fillet;
+}
 
 }  // namespace bernal
