@@ -4,7 +4,7 @@
     data/solvers/composite_conductivity.py RESULT [--conductivity NAME=K …] [--case FOLDER] [--json] [-- OPTIONS]
 
 RESULT is what `bernal pack` wrote, in a box that is periodic along all axes. `bernal mesh` meshes spheres, bridges and
-what is between them, with the OPTIONS; a mesh that stands in the case already is taken as it is. Each region of the mesh
+what is between them, with the OPTIONS; a mesh that the script has made before of the same spheres with the same OPTIONS is taken again. Each region of the mesh
 has its conductivity: 1 for "fluid", which is the matrix, and 10 for others, "spheres", "bridges" and layers of spheres by
 their names, unless --conductivity names them.
 
@@ -19,12 +19,14 @@ Printed beside it, at the volume fractions of the mesh, with the least and large
 Debian: tetgen calculix-ccx python3-numpy.
 """
 import argparse
+import hashlib
 import json
 import math
 import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy
@@ -33,7 +35,37 @@ AXES = "xyz"
 
 
 def stop(why):
-    sys.exit(f"composite_conductivity.py: {why}")
+    print(f"composite_conductivity.py: {why}", file=sys.stderr)
+    sys.exit(2)
+
+
+def layer_names(value, is_layer=False):
+    """Of all layers that a scene names, of classes and zones too."""
+    if isinstance(value, list):
+        return set().union(*(layer_names(part, is_layer) for part in value))
+    if not isinstance(value, dict):
+        return set()
+    if is_layer:
+        return {value.get("name")}
+    return set().union(*(layer_names(part, key == "layers") for key, part in value.items()))
+
+
+def asked_conductivities(pairs, scene):
+    """By region; refuses, before anything is meshed, what no mesh of the scene can have."""
+    layers, asked = layer_names(scene), {}
+    for pair in pairs:
+        name, _, value = pair.partition("=")
+        try:
+            asked[name] = float(value)
+        except ValueError:
+            stop(f"--conductivity {pair}: NAME=K with a number K is needed")
+        if not 0 < asked[name] < math.inf:
+            stop(f"--conductivity {pair}: a conductivity has to be positive")
+        if name.startswith("layer_") and name[6:] not in layers:
+            stop(f"the scene names no layer \"{name[6:]}\"" + (f", but {', '.join(sorted(layers))}" if layers else ""))
+        if not name.startswith(("fluid", "spheres", "bridges", "layer_")):
+            stop(f"\"{name}\" is no region: fluid, spheres, bridges, layer_NAME")
+    return asked
 
 
 class Mesh:
@@ -145,22 +177,31 @@ def main():
     for program in (asked.bernal, "ccx"):
         if not shutil.which(program):
             stop(f"{program} is not installed")
+    for name in ("spheres.csv", "scene.toml", "report.json"):
+        if not (asked.result / name).exists():
+            stop(f"{asked.result} has no {name}; give the folder that bernal pack wrote")
+    wanted = asked_conductivities(asked.conductivity, tomllib.loads((asked.result / "scene.toml").read_text()))
     report = json.loads((asked.result / "report.json").read_text())
     edges = report.get("box", {}).get("edges", [])
     folder = asked.case or asked.result.with_name(asked.result.name + "_heat")
     folder.mkdir(parents=True, exist_ok=True)
-    if not (folder / "packing.inp").exists():
+    made = hashlib.sha256(b"".join((asked.result / name).read_bytes() for name in ("spheres.csv", "scene.toml"))
+                          + repr(given[split + 1:]).encode()).hexdigest()
+    mark = folder / "mesh_of.sha256"
+    if mark.exists() and mark.read_text() == made:
+        print(f"the mesh in {folder} is of these spheres and options, and taken again", file=sys.stderr)
+    else:
         run(Path(shutil.which(asked.bernal)).resolve(), "mesh", asked.result.resolve(), "--to", "abaqus", "-o", "packing.inp",
             "--regions", "all", "--quiet", *given[split + 1:], folder=folder)
+        mark.write_text(made)
     if len(edges) != 3 or not (folder / "packing_periodic.inc").exists():
         stop("the packing has to lie in a box that is periodic along all axes")
     mesh = Mesh(folder / "packing.inp")
     conductivity = {name: 1.0 if name == "fluid" else 10.0 for name in mesh.regions}
-    for pair in asked.conductivity:
-        name, _, value = pair.partition("=")
+    for name, value in wanted.items():
         if name not in conductivity:
             stop(f"the mesh has no region \"{name}\", but {', '.join(conductivity)}")
-        conductivity[name] = float(value)
+        conductivity[name] = value
     write_job(folder, "packing", mesh, conductivity, edges)
     run("ccx", "conduction", folder=folder)
     fluxes = mean_fluxes(folder / "conduction.dat", mesh)

@@ -4,8 +4,8 @@
     data/solvers/pressure_drop.py RESULT [--reynolds 1 100] [--case FOLDER] [--json] [-- OPTIONS]
 
 RESULT is what `bernal pack` wrote: a cylinder, with floor and lid or periodic, or a box that is periodic along all axes.
-`bernal mesh` meshes the space between the spheres, with the OPTIONS; a mesh that stands in the case already is taken as it
-is. The flow is laminar, incompressible and steady, and fluid sticks to spheres, bridges and walls.
+`bernal mesh` meshes the space between the spheres, with the OPTIONS; a mesh that the script has made before of the same spheres
+with the same OPTIONS is taken again. The flow is laminar, incompressible and steady, and fluid sticks to spheres, bridges and walls.
 
 A cylinder with floor and lid gets free space in place of what it had: --before and --behind diameters long, in front of the
 first sphere and after the last along the axis. Fluid enters at the floor with the uniform velocity U, and leaves at the lid.
@@ -22,9 +22,12 @@ fluid flows around, both as the mesh has them, and beside it, with A = 1 + 2 / (
   Eisfeld & Schnitzlein (2001) 154 A^2 (1 - e)^2 / (e^3 Re) + A (1 - e) / (B e^3), B = (1.15 (d/D)^2 + 0.87)^2
 The second holds for spheres at D/d above 1.6 and Re of 0.01 to 17,600; the first knows no walls.
 
+Exit codes: 0; 2 bad input; 3 where simpleFoam diverged or did not converge. What it printed is in log.simpleFoam of the case.
+
 Debian: tetgen openfoam python3-numpy.
 """
 import argparse
+import hashlib
 import json
 import math
 import os
@@ -55,8 +58,9 @@ SOLUTION = """solvers
     U { solver smoothSolver; smoother symGaussSeidel; tolerance 1e-10; relTol 0.1; }
 }
 SIMPLE { consistent yes; nNonOrthogonalCorrectors 0; pRefCell 0; pRefValue 0; }
-relaxationFactors { fields { p 0.8; } equations { U 0.8; } }
+relaxationFactors { fields { p %g; } equations { U %g; } }
 """
+RELAXATION = (0.8, 0.8), (0.3, 0.6)  # of p and U; the second where the first diverges
 FORCE = """drive
 {{
     type meanVelocityForce;
@@ -70,8 +74,13 @@ FORCE = """drive
 EVERY = 25  # iterations between two looks at the gradient
 
 
-def stop(why):
-    sys.exit(f"pressure_drop.py: {why}")
+def stop(why, code=2):
+    print(f"pressure_drop.py: {why}", file=sys.stderr)
+    sys.exit(code)
+
+
+class Diverged(Exception):
+    pass
 
 
 def vector(values):
@@ -83,6 +92,9 @@ class Bed:
 
     def __init__(self, folder, along):
         self.folder = folder
+        for name in ("spheres.csv", "scene.toml", "report.json"):
+            if not (folder / name).exists():
+                stop(f"{folder} has no {name}; give the folder that bernal pack wrote")
         lines = (folder / "spheres.csv").read_text().splitlines()
         rows = [line.split(",")[:4] for line in lines if line[0] in "-.0123456789"]
         self.spheres = numpy.array(rows, dtype=float)
@@ -179,7 +191,9 @@ class Case:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(HEAD.format(kind=kind, name=file.name) + text)
 
-    def write_fields(self):
+    def write_fields(self, relaxation):
+        for old in self.folder.glob("[1-9]*"):
+            shutil.rmtree(old)
         start = vector(self.bed.axis / self.porosity)  # U = 1 in the unit of length
         ends = {}
         if self.bed.flows_in:  # what flows back through the lid would grow without bounds if its velocity were that inside
@@ -197,7 +211,7 @@ class Case:
                    f"boundaryField\n{{\n{of_pressure}}}\n")
         self.write("constant/turbulenceProperties", "dictionary", "simulationType laminar;\n")
         self.write("system/fvSchemes", "dictionary", SCHEMES)
-        self.write("system/fvSolution", "dictionary", SOLUTION)
+        self.write("system/fvSolution", "dictionary", SOLUTION % relaxation)
 
     def gradient(self, said, time):
         """Of the pressure at a superficial velocity of 1, and that velocity as it came out."""
@@ -215,29 +229,55 @@ class Case:
         """f, Re of the velocity that came out, how much the last iterations changed f, and their number."""
         self.write("constant/transportProperties", "dictionary",
                    f"transportModel Newtonian;\nnu {self.diameter / reynolds:.17g};\n")
-        last, change, mean = None, math.inf, 1 / self.porosity
+        last, change = None, math.inf
         for time in range(begin + EVERY, begin + most + 1, EVERY):
             if not self.bed.flows_in:
-                self.write("constant/fvOptions", "dictionary", FORCE.format(velocity=vector(self.bed.axis * mean)))
+                self.write("constant/fvOptions", "dictionary", FORCE.format(velocity=vector(self.bed.axis / self.porosity)))
             self.write("system/controlDict", "dictionary", CONTROL.format(end=time, every=EVERY))
-            said = run("simpleFoam", folder=self.folder)
-            drop, velocity = self.gradient(said, time)
+            said = run("simpleFoam", folder=self.folder, log=self.folder / "log.simpleFoam")
+            drop, velocity = self.gradient(said, time) if said else (math.nan, 1)
             drop *= self.diameter / velocity**2
+            if not 0 < drop < 1e9 * (1 + 1 / reynolds):
+                raise Diverged(f"simpleFoam diverged at Re = {reynolds:g}, within {time} iterations")
             change = abs(drop / last - 1) if last else math.inf
+            print(f"Re = {reynolds:g}, {time - begin} iterations: f = {drop:.5g}", file=sys.stderr, flush=True)
             last = drop
             if change < tolerance:
                 break
         return last, velocity * reynolds, change, time
 
 
-def run(*command, folder):
+def run(*command, folder, log=None):
+    """What the command prints; where it fails the end, or, with a log, nothing."""
     environment = dict(os.environ, PWD=str(folder))
     if Path("/usr/share/openfoam/etc").is_dir():  # Debian leaves it to its users to say where it is
         environment.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
     done = subprocess.run([str(word) for word in command], cwd=folder, env=environment, capture_output=True, text=True)
+    if log:
+        with open(log, "a") as file:
+            file.write(done.stdout + done.stderr)
+        return "" if done.returncode else done.stdout
     if done.returncode:
-        stop(f"{command[0]} ended with {done.returncode}\n{(done.stdout + done.stderr)[-2000:]}")
+        stop(f"{' '.join(str(word) for word in command[:2])} ended with {done.returncode}: {(done.stdout + done.stderr)[-1000:]}")
     return done.stdout
+
+
+def make_mesh(bed, options, folder, bernal):
+    """In the case, unless it has the one of these spheres and options."""
+    if any(option.split("=")[0] == "--regions" for option in options):
+        stop("the flow takes the fluid alone: leave out --regions")
+    made = hashlib.sha256((bed.folder / "spheres.csv").read_bytes() + (bed.folder / "scene.toml").read_bytes()
+                          + repr(options).encode()).hexdigest()
+    mark, mesh = folder / "mesh_of.sha256", folder / "constant" / "polyMesh"
+    if mesh.exists():
+        if not mark.exists():
+            stop(f"{folder} has a mesh that this script has not made; name another --case")
+        if mark.read_text() == made:
+            print(f"the mesh in {folder} is of these spheres and options, and taken again", file=sys.stderr)
+            return
+        shutil.rmtree(mesh)
+    run(bernal, "mesh", bed.folder, "--to", "openfoam", "-o", "bed.foam", "--quiet", *options, folder=folder)
+    mark.write_text(made)
 
 
 def ergun(porosity, reynolds):
@@ -278,12 +318,9 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     if bed.flows_in:
         bed.give_free_space(asked.before, asked.behind, asked.ends, folder, bernal)
-    if not (folder / "constant" / "polyMesh").exists():
-        run(bernal, "mesh", bed.folder, "--to", "openfoam", "-o", "bed.foam", "--quiet", *given[split + 1:], folder=folder)
+    make_mesh(bed, given[split + 1:], folder, bernal)
     case = Case(folder, bed)
-    for old in [*folder.glob("[1-9]*")]:
-        shutil.rmtree(old)
-    case.write_fields()
+    (folder / "log.simpleFoam").unlink(missing_ok=True)
     ratio = bed.width / case.diameter
     said = {"cells": int(case.cells), "spheres": len(bed.spheres), "porosity": case.porosity, "diameter": case.diameter,
             "width_over_diameter": ratio if math.isfinite(ratio) else None, "flows": []}
@@ -294,9 +331,20 @@ def main():
         window = f" in a window of {said['window']:.3g} d" if bed.flows_in else ""
         print(f"bed           {len(bed.spheres):,} spheres, {walls}, porosity {case.porosity:.4f} of the mesh{window}, "
               f"d = {case.diameter:.5g}, {case.cells:,} tetrahedra", flush=True)
-    begin = 0
-    for asked_for in sorted(asked.reynolds):
-        drop, reynolds, change, begin = case.solve(asked_for, begin, asked.most, asked.tolerance)
+    flows = []
+    for relaxation in RELAXATION:
+        try:
+            case.write_fields(relaxation)
+            begin, flows = 0, []
+            for reynolds in sorted(asked.reynolds):
+                flows.append(case.solve(reynolds, begin, asked.most, asked.tolerance))
+                begin = flows[-1][-1]
+            break
+        except Diverged as why:
+            if relaxation == RELAXATION[-1]:
+                stop(f"{why}: see {folder / 'log.simpleFoam'}; a smaller --mesh-size or --neck-size helps, and a smaller Re", 3)
+            print(f"{why}; again, with less of each step", file=sys.stderr, flush=True)
+    for drop, reynolds, change, _ in flows:
         of = {"Re": reynolds, "f": drop, "change": change, "ergun": ergun(case.porosity, reynolds),
               "eisfeld_schnitzlein": eisfeld_schnitzlein(case.porosity, reynolds, ratio)}
         said["flows"].append(of)
@@ -304,9 +352,10 @@ def main():
             continue
         print(f"Re = {reynolds:<8.4g} f = {drop:.5g}; Ergun {of['ergun']:.5g} ({drop / of['ergun'] - 1:+.1%} from it), "
               f"Eisfeld & Schnitzlein {of['eisfeld_schnitzlein']:.5g} ({drop / of['eisfeld_schnitzlein'] - 1:+.1%})"
-              + ("" if change < asked.tolerance else f"; not converged, it still changes by {change:.2%}"), flush=True)
+              + ("" if change < asked.tolerance else f"; not converged, it still changes by {change:.2%}: raise --most"))
     if asked.json:
         print(json.dumps(said))
+    sys.exit(0 if all(change < asked.tolerance for _, _, change, _ in flows) else 3)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ the bounds of Hashin and Shtrikman.
 Debian: tetgen openfoam calculix-ccx python3-numpy. Takes some minutes.
 """
 import math
+import subprocess
 
 from client import *
 
@@ -73,6 +74,8 @@ def flow(lattice):
     of = said["flows"][0]
     drag = of["f"] * of["Re"] / (6 * math.pi * radius * said["diameter"]**2)
     expect(abs(drag / DRAG - 1) < 0.02, f"simple cubic lattice: drag {drag:.3f}, Zick & Homsy {DRAG}")
+    coarse = solved("pressure_drop.py", lattice, "--reynolds", reynolds, "--", "--mesh-size", "0.5")
+    expect(coarse["cells"] < said["cells"], "a mesh with other options is not the one that stands in the case")
 
 
 def flow_through(bed):
@@ -86,7 +89,15 @@ def flow_through(bed):
     expect(said["flows"][0]["f"] > 1.1 * said["flows"][0]["ergun"], "walls slow creeping flow through narrow beds")
 
 
+def refused(script, result, *words):
+    done = subprocess.run(["/usr/bin/python3", DATA / "solvers" / script, "result", "--bernal", BERNAL, *words],
+                          cwd=result.folder, capture_output=True, text=True)
+    expect(done.returncode == 2 and done.stderr.count("\n") == 1, f"refused: {done.stderr.strip()}")
+
+
 def heat(lattice, coated, composite):
+    for wrong in ("layer_core", "layer_core=0", "layer_shell=2", "core=2"):
+        refused("composite_conductivity.py", coated, "--conductivity", wrong)
     said = solved("composite_conductivity.py", lattice, "--", "--mesh-size", "0.2")
     phi = said["shares"]["spheres"]
     known = rayleigh(phi, 10, 10)
