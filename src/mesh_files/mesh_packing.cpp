@@ -34,6 +34,9 @@ const std::vector<MeshWriter>& mesh_writers() {
   return all;
 }
 
+/// The circle that a fillet turns about its axis has a radius of w²/(2 (1 - w)) for a waist of w.
+constexpr double least_waist_of_fillets = 0.1;
+
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
 
 const MeshWriter& mesh_writer_of(const std::string& name) {
@@ -326,6 +329,11 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   for (const MeshKey& key : mesh_keys()) require_in_range(key, options);
   if (options.order > format.largest_order)
     refuse(fmt::format("the format {} has no elements of second order", format.name));
+  if (options.contact == ContactTreatment::fillet && options.bridge_angle == 0 &&
+      options.bridge_radius < least_waist_of_fillets)
+    refuse(
+        fmt::format("‹bridge_radius› of fillets is at least {}: thinner ones need triangles without number",
+                    least_waist_of_fillets));
   if (!options.unit.empty()) {
     unit_named(options.unit);
     if (format.is_surface)

@@ -361,6 +361,9 @@ TEST(MeshCommand, RefusesWhatItCannotWrite) {
                              {"openfoam", "second order"});
   expect_refused_in_one_line(bernal({"mesh", result.out(), "--to", "openfaom", "-o", file}), {"openfoam"});
   expect_refused_in_one_line(bernal({"mesh", result.out(), "--to", "gmsh", "-o", "-"}), {"-o"});
+  expect_refused_in_one_line(bernal({"mesh", result.out(), "--to", "openfoam", "-o", file, "--contact",
+                                     "fillet", "--bridge-radius", "0.05"}),
+                             {"at least 0.1"});
   expect_refused_in_one_line(
       bernal({"mesh", result.out(), "--to", "gmsh", "-o", result.out() + "/spheres.csv"}), {"spheres.csv"});
   EXPECT_FALSE(fs::exists(file));
