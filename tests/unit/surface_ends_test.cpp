@@ -110,7 +110,10 @@ TEST(ConformingSurface, ThinSidesOfBridgesAreMeshed) {
   for (const double first : {0.0, 2.0, 5.0})  // where it begins around the axis
     for (const double height : {0.02, 0.004, 0.0004}) {
       SurfaceDraft draft(solids, options);
-      DraftNeck neck{.is_cut = true, .radius = 0.1, .begin = 0, .end = height, .edge = 0.12};
+      DraftNeck neck;
+      static_cast<NeckShape&>(neck) = {.radius = 0.1, .end = height, .rims = {0.1, 0.1}};
+      neck.is_cut = true;
+      neck.edge = 0.12;
       NeckTrace boundary{.is_closed = true};
       double area = 0, x_before = 0, y_before = 0;  // of the boundary, unrolled
       const auto add = [&](double angle, double along) {
