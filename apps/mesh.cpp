@@ -8,6 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/mesh_files/mesh_packing.hpp"
 #include "bernal/plan/plan.hpp"
+#include "bernal/result/read_packing.hpp"
 #include "commands.hpp"
 #include "progress_bar.hpp"
 #include "results.hpp"
@@ -100,13 +101,12 @@ void print_report(const BedMeshReport& report, std::string_view unit) {
 }
 
 /// Where the mesh may not be of what the user thinks of.
-void say_cautions(const Packing& packing) {
+void say_cautions(const Packing& packing, const std::filesystem::path& folder) {
   for (const std::filesystem::path& changed : changed_files(packing.scene))
     say(stderr, "caution    {} has changed since it was packed into; the walls are those that it holds now\n",
         plain_text(changed.string()));
-  if (packing.outcome != Outcome::converged && packing.outcome != Outcome::imported)
-    say(stderr, "caution    the packing is not what was asked for, {}: {}\n", name_of(packing.outcome),
-        packing.reason);
+  if (const std::string shortfall = shortfall_of_result(folder); !shortfall.empty())
+    say(stderr, "caution    the packing is not what was asked for: {}\n", shortfall);
 }
 
 int mesh_of(const MeshCall& call) {
@@ -116,7 +116,7 @@ int mesh_of(const MeshCall& call) {
   ProgressBar bar(call.quiet || call.json);
   bar.now("read");
   const Packing packing = read_result(call.folder);
-  if (!call.quiet) say_cautions(packing);
+  if (!call.quiet) say_cautions(packing, call.folder);
   const MeshedPacking meshed = mesh_packing(packing, options, call.file, bar.monitor());
   bar.clear();
   const BedMeshReport& report = meshed.report;

@@ -10,10 +10,13 @@
 #include <fmt/ranges.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/text.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/scene/sphere_classes.hpp"
+#include "files/bytes_of_file.hpp"
 #include "files/npy_file.hpp"
 #include "files/put_in_place.hpp"
+#include "report/report_summary.hpp"
 #include "result/nest_folder.hpp"
 #include "scene/read_npy_spheres.hpp"
 #include "scene/read_spheres.hpp"
@@ -149,6 +152,16 @@ Packing read_packing(const std::filesystem::path& folder) {
       start && std::filesystem::equivalent(where_it_stands(*start), spheres_of_result(folder), unknown))
     packing.outcome = Outcome::imported;  // only such a result begins from itself
   return packing;
+}
+
+std::string shortfall_of_result(const std::filesystem::path& folder) {
+  const std::filesystem::path report = where_it_stands(folder / "report.json");
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(report, unknown)) return {};
+  const auto said = summary_of_report(bytes_of_file(report));
+  if (!said || said->outcome == name_of(Outcome::converged) || said->outcome == name_of(Outcome::imported))
+    return {};
+  return fmt::format("{}: {}", said->outcome, plain_text(said->reason));
 }
 
 }  // namespace bernal

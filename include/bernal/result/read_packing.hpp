@@ -57,4 +57,8 @@ bool is_unpublished(const std::filesystem::path& folder);
 /// `read_csv_of` do.
 Packing read_packing(const std::filesystem::path& folder);
 
+/// How the run that wrote a result fell short of what its scene asks, as report.json says: "full: 9 of 50
+/// spheres are placed". Empty where it did not, or where there is no such report.
+std::string shortfall_of_result(const std::filesystem::path& folder);
+
 }  // namespace bernal
