@@ -95,11 +95,13 @@ struct ConformingSurface {
 
 struct SurfaceMeshOptions {
   double sphere_edge = 0.3;  ///< longest edges on spheres, in radii
-  double neck_edge = 0.15;   ///< edges where necks begin, in radii of the smaller sphere
-  double per_gap = 2;        ///< edges where surfaces are near each other, in widths of the gap there
-  bool solids = false;       ///< whether what is inside spheres and necks is a region too
-  double per_layer = 6;      ///< edges on spheres with thin layers, in thicknesses of these; half of that
-                             ///< where an end of a period cuts a layer so that no prisms fit into it
+  /// Longest edges on walls beside spheres, in the largest radius; twice those on spheres if 0.
+  double wall_edge = 0;
+  double neck_edge = 0.15;  ///< edges where necks begin, in radii of the smaller sphere
+  double per_gap = 2;       ///< edges where surfaces are near each other, in widths of the gap there
+  bool solids = false;      ///< whether what is inside spheres and necks is a region too
+  double per_layer = 6;     ///< edges on spheres with thin layers, in thicknesses of these; half of that
+                            ///< where an end of a period cuts a layer so that no prisms fit into it
 };
 
 /// The surface of a bed, made without a Boolean kernel: points along the circles in which spheres are cut,

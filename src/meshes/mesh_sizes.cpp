@@ -130,7 +130,7 @@ double MeshSizes::on_sphere(const Vector<3>& p, const Vector<3>& center, double 
 
 double MeshSizes::on_wall(const Vector<3>& p, const Vector<3>& normal, bool is_end) const {
   // A sphere that is out of reach asks for no shorter edges than the limit.
-  double limit = 2 * options_.sphere_edge * largest_;
+  double limit = (options_.wall_edge > 0 ? options_.wall_edge : 2 * options_.sphere_edge) * largest_;
   const double most = most_far_away(solids_.domain) * limit;
   double size = on_wall_within(p, normal, is_end, limit);
   while (size >= limit && limit < most) {
