@@ -47,8 +47,8 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
     fmt::print("; {} smaller than packed, by up to {:.2g} %", grouped(report.shrunk_spheres),
                100 * report.largest_shrinking);
   if (report.wall_deviation > 0)
-    fmt::print("\nwalls        triangles of curved walls, up to {:.3g} {} off them", report.wall_deviation,
-               unit);
+    fmt::print("\nwalls        triangles of curved walls, about {:.3g} {} off them at most",
+               report.wall_deviation, unit);
   fmt::print("\nsurface      {} triangles, least edge {:.4g} {}, least angle {:.2f} degrees near {}\n",
              grouped(report.triangles), report.least_edge, unit, report.least_triangle_angle,
              text_of_place(report.place_of_least_angle));

@@ -308,6 +308,8 @@ def main():
     given = sys.argv[1:]
     split = given.index("--") if "--" in given else len(given)
     asked = words.parse_args(given[:split])
+    if not all(0 < reynolds < math.inf for reynolds in asked.reynolds):
+        words.error("Reynolds numbers are above 0")
     for program in (asked.bernal, "simpleFoam"):
         if not shutil.which(program):
             stop(f"{program} is not installed")

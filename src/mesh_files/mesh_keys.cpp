@@ -63,7 +63,7 @@ const std::vector<MeshKey>& mesh_keys() {
        "SHARE", &Of::bridge_radius, 0.05, 0.7},
       {"bridge_angle",
        "Instead: the least angle at centres of spheres between the axis of a bridge and where it begins",
-       "DEGREES", &Of::bridge_angle, 3, 44},
+       "DEGREES", &Of::bridge_angle, 3, 40},
       {"mesh_size", "Edges on spheres, in radii; 0.3 if absent", "SHARE", &Of::sphere_edge, 0.02, 0.9},
       {"neck_size", "Edges where bridges begin, in radii; 0.15 if absent", "SHARE", &Of::neck_edge, 0.01,
        0.9},
@@ -119,6 +119,9 @@ MeshFileOptions mesh_options_of(std::string_view format, const std::map<std::str
   }
   if (words.contains("bridge_radius") && words.contains("bridge_angle"))
     throw Error(ErrorCode::bad_argument, "bridges take ‹bridge_radius› or ‹bridge_angle›, not both");
+  for (const char* key : {"prism_height", "prism_growth"})
+    if (words.contains(key) && options.prisms == 0)
+      throw Error(ErrorCode::bad_argument, fmt::format("‹{}› is of ‹prisms›, of which there are none", key));
   return options;
 }
 

@@ -291,15 +291,15 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
 
 /// A folder that is named for a case of OpenFOAM stands for the file in it that has its name.
 fs::path file_named(const MeshFormat& format, const fs::path& named) {
-  if (format.ending == ".foam" && (fs::is_directory(named) || !named.has_extension())) {
-    const fs::path folder = named.has_filename() ? named : named.parent_path();
-    return folder / (fs::absolute(folder).lexically_normal().filename().string() + format.ending);
-  }
   for (const MeshFormat& other : mesh_formats())
     if (named.extension() == other.ending && other.ending != format.ending)
       refuse(fmt::format("files of {} end in {}, those of {} in {}", other.name, other.ending, format.name,
                          format.ending));
-  return named;
+  if (format.ending != ".foam" || (named.extension() == format.ending && !fs::is_directory(named)))
+    return named;
+  fs::path folder = fs::absolute(named).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  return named / (folder.filename().string() + format.ending);
 }
 
 /// Lengths in another unit.

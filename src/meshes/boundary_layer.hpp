@@ -27,11 +27,11 @@ std::vector<double> shares_of_layers(const BoundaryLayerOptions&);
 ///
 /// Prisms stand along the normals of spheres and walls. They take at most half of the room up to the nearest
 /// triangle of another patch, less half of what tetrahedra need, so those of surfaces that face each other
-/// stay apart; where that is less than a third of the height asked for, or flat beside the edges there, there
-/// are none. Where layers end, they are high enough beside the edges there for the faces of each cell to
-/// determine a gradient, as far as few layers and the height asked for allow that. Between
-/// vertices that are next to each other the height changes by at most half of the distance: prisms end in a
-/// slope, without a step.
+/// stay apart; where that is less than three tenths of the height asked for, or flat beside the edges there,
+/// there are none. Where layers end, they are high enough beside the edges there for the faces of each cell
+/// to determine a gradient, as far as few layers and the height asked for allow that. Between vertices that
+/// are next to each other the height changes by at most half of the distance: prisms end in a slope, without
+/// a step.
 ///
 /// Precondition: the fluid alone has a region. The same for any number of threads. Cost: some µs a vertex.
 std::vector<Vector<3>> prism_columns(const ConformingSurface&, const BoundaryLayerOptions&);

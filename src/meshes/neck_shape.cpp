@@ -87,7 +87,7 @@ double radius_for_angle(const NeckEnds& ends, double degrees, bool is_fillet) {
                                     : (d - larger * c) / (1 + c);
     radius = (larger + tube) * std::sin(angle) - tube;
   }
-  return std::clamp(radius, 0.05 * smaller, 0.7 * smaller);
+  return std::clamp(radius, (is_fillet ? 0.1 : 0.05) * smaller, 0.7 * smaller);
 }
 
 double radius_for_rim(const NeckEnds& ends, std::size_t end, double rim, double radius) {

@@ -48,8 +48,8 @@ struct NeckEnds {
 NeckShape cylinder_between(const NeckEnds&, double radius);
 /// The fillet whose waist has this radius: t is the root of a quadratic equation. Precondition as above.
 NeckShape fillet_between(const NeckEnds&, double radius);
-/// The radius, between 0.05 and 0.7 of the smaller sphere's, with which the circle in which a neck begins is
-/// seen from the centres of spheres under half-angles of at least this one, in degrees.
+/// The radius, between 0.05 (0.1 of fillets) and 0.7 of the smaller sphere's, with which the circle in which
+/// a neck begins is seen from the centres of spheres under half-angles of at least this one, in degrees.
 double radius_for_angle(const NeckEnds&, double degrees, bool is_fillet);
 /// The largest radius up to the given one with which the fillet's circles on sphere or wall `end` have a
 /// radius of at most this one; `radius` itself, if they have. 0: none.

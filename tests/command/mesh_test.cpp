@@ -334,6 +334,8 @@ TEST(MeshCommand, SaysWhatTheMeshIsOf) {
   EXPECT_NE(ended.out.find("as packed"), std::string::npos);
   EXPECT_NE(ended.err.find("floor (patch)"), std::string::npos) << ended.err;
   EXPECT_TRUE(fs::exists(fs::path(folder) / "case.foam"));
+  ASSERT_EQ(meshed({"--to", "snappy", "-o", result.folder / "run1.5"}).status, 0);
+  EXPECT_TRUE(fs::exists(result.folder / "run1.5/run1.5.foam"));
   std::ifstream points(fs::path(folder) / "constant/polyMesh/points");
   double largest = 0;
   for (std::string line; std::getline(points, line);) {
@@ -342,6 +344,8 @@ TEST(MeshCommand, SaysWhatTheMeshIsOf) {
   }
   EXPECT_NEAR(largest, 2.5e-3, 1e-12);
   expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / "bed.msh"}), {".vtu", "gmsh"});
+  expect_refused_in_one_line(
+      meshed({"--to", "vtu", "-o", result.folder / "bed.vtu", "--prism-height", "0.2"}), {"--prism-height"});
   expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / "bed.vtu", "--unit", "parsec"}),
                              {"parsec"});
   expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / "bed.vtu", "--gap-size", "4 mm"}),
