@@ -234,7 +234,7 @@ SurfaceMeshOptions sizes_of(const MeshFileOptions& options, bool is_surface) {
                            .per_gap = options.gap_edge,
                            .solids = options.solids,
                            .per_layer = options.layer_edge};
-  if (options.prisms > 0) sizes.wall_edge = sizes.sphere_edge;  // columns are as high as on spheres
+  if (options.prisms > 0) sizes.wall_edge = 0.8 * sizes.sphere_edge;  // columns are as upright as on spheres
   if (!is_surface) return sizes;
   sizes.sphere_edge *= finer;
   sizes.neck_edge *= finer;

@@ -47,7 +47,7 @@ diameter = 1
 SLAB = """unit = "mm"
 [container]
 kind = "periodic"
-size = [2.5, 2.5, 2.5]
+size = [3, 3, 2.5]
 walls = [2]
 [spheres]
 count = 8
