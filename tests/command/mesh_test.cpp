@@ -126,7 +126,8 @@ TEST(MeshCommand, PrismsStandInTheFluid) {
   if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   const Packed result;
   const auto mesh = [&](const std::string& format, const std::vector<std::string>& more) {
-    std::vector<std::string> words = {"mesh", result.out(), "--to", format, "-o", result.folder / "bed.file"};
+    std::vector<std::string> words = {"mesh", result.out(), "--to",
+                                      format, "-o",         result.folder / (format + ".bed")};
     words.insert(words.end(), more.begin(), more.end());
     return bernal(words);
   };
