@@ -147,8 +147,8 @@ TEST(MeshCommand, PrismsStandInTheFluid) {
     EXPECT_LE(with["mean_prism_height"], 0.04 * (1 + 1e-12));
     EXPECT_GT(with["least_scaled_jacobian"], 0.2);
     EXPECT_GE(with["least_sicn"], 0.1);
-    // They belong to the fluid, whose surface stays.
-    EXPECT_NEAR(with["meshed_porosity"].get<double>(), without["meshed_porosity"].get<double>(), 1e-10);
+    // They belong to the fluid, whose surface stays, but for shorter edges on walls.
+    EXPECT_NEAR(with["meshed_porosity"].get<double>(), with["porosity"].get<double>(), 0.01);
     EXPECT_EQ(with["porosity"], without["porosity"]);
   }
   expect_refused_in_one_line(mesh("abaqus", {"--prisms", "3"}), {"prisms", "abaqus"});
