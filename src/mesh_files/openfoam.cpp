@@ -86,6 +86,7 @@ void write_face_zones(const MeshToWrite& file, const PolyMesh& poly, StagedFolde
     std::size_t face;
     bool is_flipped;
   };
+  if (file.mesh.regions.size() < 2) return;
   std::vector<std::vector<ZoneFace>> of_surface(file.groups.surfaces.size());
   const auto sides = sides_of_triangles(file.mesh);
   for (std::size_t t = 0; t < sides.size(); ++t) {

@@ -11,26 +11,21 @@
 #include "meshes/triangle_sides.hpp"
 
 namespace bernal {
-namespace {
 
-constexpr double most_volume_error = 1e-10;
-
-double volume_error(const VolumeMesh& mesh, const ConformingSurface& surface) {
+void require_filled(const VolumeMesh& mesh, const ConformingSurface& surface, FillReport& report) {
+  constexpr double most = 1e-10;
+  sides_of_triangles(mesh);  // which throws unless the surface is kept
   const std::vector<double> found = volumes_of_regions(mesh), wanted = volumes_between(surface);
-  double error = 0;
   for (std::size_t r = 0; r < found.size(); ++r) {
     const double off = std::abs(found[r] - wanted[r]) / std::abs(wanted[r]);
-    if (!(off <= most_volume_error && wanted[r] > 0))
+    if (!(off <= most && wanted[r] > 0))
       throw Error(ErrorCode::bad_mesh,
                   fmt::format("a region of the mesh has the volume {:.9g}, and between its triangles it is "
                               "{:.9g}: is the surface closed?",
                               found[r], wanted[r]));
-    error = std::max(error, off);
+    report.volume_error = std::max(report.volume_error, off);
   }
-  return error;
 }
-
-}  // namespace
 
 VolumeMesh fill(const ConformingSurface& surface, const TetrahedraOptions& options, FillReport& report,
                 const Monitor& monitor) {
@@ -55,8 +50,7 @@ VolumeMesh fill(const ConformingSurface& surface, const TetrahedraOptions& optio
   report.improvements =
       improve(mesh, {.goal = options.goal, .for_gradients = options.for_gradients}, monitor);
   report.seconds_improving = improving.seconds();
-  sides_of_triangles(mesh);  // which throws unless the surface is kept
-  report.volume_error = volume_error(mesh, surface);
+  require_filled(mesh, surface, report);
   return mesh;
 }
 

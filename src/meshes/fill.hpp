@@ -33,4 +33,8 @@ struct FillReport {
 /// Cost: about 30 µs and 1 kB a tetrahedron.
 VolumeMesh fill(const ConformingSurface&, const TetrahedraOptions&, FillReport&, const Monitor& monitor = {});
 
+/// What `fill` checks, of any mesh of a surface; the largest error of a volume is reported. Throws
+/// Error{bad_mesh} where it does not hold.
+void require_filled(const VolumeMesh&, const ConformingSurface&, FillReport&);
+
 }  // namespace bernal

@@ -1,13 +1,6 @@
 #include "meshes/fill_layers.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-
-#include <fmt/format.h>
-
-#include "bernal/core/error.hpp"
-#include "meshes/triangle_sides.hpp"
 
 namespace bernal {
 namespace {
@@ -58,20 +51,6 @@ RestOfSurface rest_of(const ConformingSurface& whole) {
   return rest;
 }
 
-void require_volumes(const VolumeMesh& mesh, const ConformingSurface& surface, FillReport& report) {
-  constexpr double most = 1e-10;
-  const std::vector<double> found = volumes_of_regions(mesh), wanted = volumes_between(surface);
-  for (std::size_t r = 0; r < found.size(); ++r) {
-    const double off = std::abs(found[r] / wanted[r] - 1);
-    if (!(off <= most))
-      throw Error(ErrorCode::bad_mesh,
-                  fmt::format("a layer of the mesh has the volume {:.9g}, and between its triangles it is "
-                              "{:.9g}",
-                              found[r], wanted[r]));
-    report.volume_error = std::max(report.volume_error, off);
-  }
-}
-
 }  // namespace
 
 VolumeMesh fill_with_layers(const ConformingSurface& surface, const TetrahedraOptions& options,
@@ -97,8 +76,7 @@ VolumeMesh fill_with_layers(const ConformingSurface& surface, const TetrahedraOp
   mesh.patches = surface.patches;
   mesh.regions = surface.regions;
   mesh.periodic = surface.periodic;
-  sides_of_triangles(mesh);  // which throws unless the surface is kept
-  require_volumes(mesh, surface, report);
+  require_filled(mesh, surface, report);
   return mesh;
 }
 

@@ -1,12 +1,8 @@
 // Prisms below the surface that tetrahedra begin at.
 #include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
 #include "meshes/boundary_layer.hpp"
-#include "meshes/triangle_sides.hpp"
 
 namespace bernal {
 namespace {
@@ -116,13 +112,7 @@ VolumeMesh fill_with_prisms(const ConformingSurface& surface, const BoundaryLaye
   report = report_of(surface, columns, mesh);
   if (!(report.least_scaled_jacobian > 0))
     throw Error(ErrorCode::bad_mesh, "a prism of the mesh is turned inside out: lower prisms help");
-  sides_of_triangles(mesh);  // which throws unless the surface is kept
-  constexpr double most = 1e-10;
-  const double found = volumes_of_regions(mesh)[0], wanted = volumes_between(surface)[0];
-  if (!(std::abs(found / wanted - 1) <= most))
-    throw Error(ErrorCode::bad_mesh, fmt::format("prisms and tetrahedra have the volume {:.9g}, and between "
-                                                 "the triangles it is {:.9g}",
-                                                 found, wanted));
+  require_filled(mesh, surface, filled);
   return mesh;
 }
 

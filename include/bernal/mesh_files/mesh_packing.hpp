@@ -114,10 +114,10 @@ struct BedMeshReport {
   std::size_t curved_edges = 0, straight_edges = 0;
 
   double domain_volume = 0;
-  double porosity = 0;         ///< in closed form, contacts as they were treated
+  double porosity = 0;                         ///< in closed form, contacts as they were treated
   std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed; nothing for a part
-  double meshed_porosity = 0;  ///< of the mesh
-  double contact_area = 0;     ///< least cross-sections of necks, flat faces of caps
+  double meshed_porosity = 0;                  ///< of the mesh
+  double contact_area = 0;                     ///< least cross-sections of necks, flat faces of caps
   struct Group {
     std::string name;
     double volume = 0;                    ///< of the mesh
