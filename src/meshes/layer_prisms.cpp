@@ -1,11 +1,10 @@
 // Spheres within spheres that are copied from those around them, and the prisms between.
-#include <algorithm>
-#include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "bernal/core/error.hpp"
-#include "meshes/mesh_quality.hpp"
 #include "meshes/surface_draft.hpp"
+#include "meshes/volume_mesh.hpp"
 
 namespace bernal {
 namespace {
@@ -125,15 +124,9 @@ class CopiedShells {
                               draft_.made.size[ids[k]]);
   }
 
-  /// Three tetrahedra: across each side the diagonal goes from below the vertex of lower rank.
-  void add_prism(Triangle t, std::int32_t region) {
-    std::ranges::sort(t, {}, [&](std::uint32_t v) { return rank(v); });
-    const auto [a, b, c] = t;
-    const std::uint32_t u = below_.at(a), v = below_.at(b), w = below_.at(c);
-    for (TetrahedronCorners corners :
-         {TetrahedronCorners{u, v, w, c}, TetrahedronCorners{u, v, b, c}, TetrahedronCorners{u, a, b, c}}) {
-      const auto at = [&](std::size_t k) -> const Vector<3>& { return draft_.made.vertices[corners[k]]; };
-      if (sicn(at(0), at(1), at(2), at(3)) < 0) std::swap(corners[2], corners[3]);
+  void add_prism(const Triangle& t, std::int32_t region) {
+    const PrismCorners prism = {below_.at(t[0]), below_.at(t[1]), below_.at(t[2]), t[0], t[1], t[2]};
+    for (const TetrahedronCorners& corners : tetrahedra_of(prism, {rank(t[0]), rank(t[1]), rank(t[2])})) {
       draft_.made.prisms.tetrahedra.push_back(corners);
       draft_.made.prisms.region.push_back(static_cast<std::uint32_t>(region));
     }

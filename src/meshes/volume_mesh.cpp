@@ -4,12 +4,12 @@
 
 namespace bernal {
 
-std::vector<TetrahedronCorners> tetrahedra_of(const PrismCorners& prism) {
-  // The diagonal of a side goes from below the corner of lower number to above the other one. A turn of the
-  // corners that puts the lowest first leaves two orders of the others.
+std::vector<TetrahedronCorners> tetrahedra_of(const PrismCorners& prism,
+                                              const std::array<std::uint32_t, 3>& ranks) {
+  // A turn of the corners that puts the lowest first leaves two orders of the others.
   std::size_t first = 0;
   for (const std::size_t k : {1, 2})
-    if (prism[k] < prism[first]) first = k;
+    if (ranks[k] < ranks[first]) first = k;
   const std::array<std::size_t, 3> at = {first, (first + 1) % 3, (first + 2) % 3};
   const std::uint32_t a = prism[at[0]], b = prism[at[1]], c = prism[at[2]];
   const std::uint32_t u = prism[at[0] + 3], v = prism[at[1] + 3], w = prism[at[2] + 3];
@@ -21,7 +21,7 @@ std::vector<TetrahedronCorners> tetrahedra_of(const PrismCorners& prism) {
     made.push_back(corners);
   };
   add({a, v, w, u});
-  if (b < c) {
+  if (ranks[at[1]] < ranks[at[2]]) {
     add({a, b, w, v});
     add({a, b, c, w});
   } else {

@@ -33,9 +33,13 @@ struct PrismStacks {
   const PrismCorners& top(std::size_t stack) const { return prisms[(stack + 1) * layers - 1]; }
 };
 
-/// The tetrahedra that a prism is cut into: at most three, fewer for a pyramid and a tetrahedron. Prisms side
-/// by side are cut along the same diagonal.
-std::vector<TetrahedronCorners> tetrahedra_of(const PrismCorners&);
+/// The tetrahedra that a prism is cut into: at most three, fewer for a pyramid and a tetrahedron. The diagonal
+/// of a side goes from below the corner of lower rank to above the other one, so that prisms side by side are
+/// cut along the same; ranks are the numbers of the lower corners where none are given.
+std::vector<TetrahedronCorners> tetrahedra_of(const PrismCorners&, const std::array<std::uint32_t, 3>& ranks);
+inline std::vector<TetrahedronCorners> tetrahedra_of(const PrismCorners& prism) {
+  return tetrahedra_of(prism, {prism[0], prism[1], prism[2]});
+}
 
 /// Its corners, each once: six; five of a pyramid, of which the first four go around and turn to the last
 /// one; four of a tetrahedron. In the order of Gmsh's.
