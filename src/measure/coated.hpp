@@ -18,15 +18,17 @@ inline void require_gap_ratio(double ratio) {
                 fmt::format("spheres touch below a gap ratio of 0 to {:g}, not {}", widest_ratio, ratio));
 }
 
-/// Spheres and walls so that what keeps its gap touches; copies only where there are gaps.
+/// Spheres and walls so that what keeps its gap, and the margin of the domain, touches; copies only where
+/// there are any.
 class Coated {
  public:
   Coated(const Spheres<dynamic>& bare, const Domain& shape, const ContactOptions& options)
       : spheres(&bare), domain(&shape), container(options.container) {
-    if (options.gap == 0 && options.wall_gap == 0) return;
+    const double from_wall = options.wall_gap + margin_of(shape);
+    if (options.gap == 0 && from_wall == 0) return;
     with_coats_ = bare;
     for (double& r : with_coats_.r) r += 0.5 * options.gap;
-    walls_moved_ = with_walls_moved(shape, options.wall_gap - 0.5 * options.gap);
+    walls_moved_ = with_walls_moved(shape, from_wall - 0.5 * options.gap);
     spheres = &with_coats_;
     domain = &walls_moved_;
     container = nullptr;

@@ -248,7 +248,7 @@ Rest rest_in(const Spheres<dynamic>& spheres, const Domain& domain, const Vector
 
 Rest measure_rest(const Spheres<dynamic>& spheres, const Domain& domain, const Vector<3>& direction,
                   const RestOptions& options, const std::shared_ptr<const Container>& made) {
-  const double gap = options.gap, wall_gap = options.wall_gap;
+  const double gap = options.gap, wall_gap = options.wall_gap + margin_of(domain);
   if (gap == 0 && wall_gap == 0) return rest_in(spheres, domain, direction, options, made);
   Spheres<dynamic> with_coats = spheres;
   for (double& r : with_coats.r) r += 0.5 * gap;

@@ -332,7 +332,7 @@ static Plan begun_plan(const Scene& stated, const PlaceOfPlan* place = nullptr) 
 
 static Plan finished(Plan plan) {
   const Scene& scene = plan.scene;
-  if (scene.asks_for_gaps()) {
+  if (needs_room(plan)) {
     expect_with_room(plan);
     if (plan.scene.target.predicted) {  // again from the number that whoever reads it will have
       plan.scene.target.predicted = false;
@@ -353,7 +353,7 @@ Plan made_plan(const Scene& stated, const PlaceOfPlan* place) { return finished(
 
 std::optional<Plan> made_plan_where_all_fit(const Scene& stated) {
   Plan plan = begun_plan(stated);
-  if (!(plan.scene.asks_for_gaps() ? may_fit(plan_with_room(plan)) : may_fit(plan))) return {};
+  if (!(needs_room(plan) ? may_fit(plan_with_room(plan)) : may_fit(plan))) return {};
   return finished(std::move(plan));
 }
 

@@ -192,7 +192,9 @@ struct MakeDomain {
                                                                 : 0;  // what is certified is there
       const std::vector<std::filesystem::path> files = all_files_of(mesh);
       const std::vector<Stamp> before = stamps_of(files);
+      require_alone(mesh);
       ImportedMesh imported = read_container_mesh(mesh, {unit, smallest});
+      if (imported.mesh.surface) require_known_edges(*imported.mesh.surface, smallest);
       pin_files(scene, mesh);
       if (stamps_of(files) != before)
         throw Error(ErrorCode::bad_mesh, "has changed while it was read", {mesh.file.string()});
@@ -216,6 +218,34 @@ struct MakeDomain {
   }
 
  private:
+  /// What is cut out of a mesh or into parts is triangles.
+  void require_alone(const MeshFile& mesh) const {
+    if (!mesh.true_surface) return;
+    if (&container != &scene.container)
+      throw OptionError("true_surface", "is for a container, and obstacles are triangles; take the key out");
+    const char* other = !scene.container.obstacles.empty() ? "obstacles"
+                        : !scene.zones.empty()             ? "zones"
+                                                           : nullptr;
+    if (other)
+      throw OptionError("true_surface",
+                        fmt::format("is for the surface of the file as it stands, and {} make "
+                                    "other walls; take one of the two out",
+                                    other));
+  }
+
+  /// A sphere could slip through a gap that is as wide as itself.
+  void require_known_edges(const TrueSurface& surface, double smallest) const {
+    for (const TrueSurface::Face& face : surface.faces)
+      if (smallest > 0 && face.tolerance >= smallest)
+        throw OptionError(
+            "true_surface",
+            fmt::format("face {} ({}) of {} has an edge or a corner that is known to {:.3g} {} only, no "
+                        "less than the smallest sphere's radius; export the part again with a finer "
+                        "tolerance, or take the key out",
+                        face.number, face.kind, std::get<MeshFile>(container).file.filename().string(),
+                        face.tolerance, name_of(scene.unit)));
+  }
+
   void note_rounding(double deviation) const {
     notes = fmt::format("rounded edges are straight pieces on their inner side, off by {:.2g} {} at most",
                         deviation * container.rounding, name_of(scene.unit));

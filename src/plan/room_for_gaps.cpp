@@ -28,9 +28,11 @@ bool has_size(const Plan& plan) {
 
 /// A periodic box keeps its origin at zero.
 Domain region_of(const Plan& plan) {
-  const bool as_it_is = plan.scene.wall_gap == coat_of(plan.scene) || !has_walls(plan.domain);
+  const double margin = margin_of(plan.domain);
+  const bool as_it_is =
+      (plan.scene.wall_gap == coat_of(plan.scene) && margin == 0) || !has_walls(plan.domain);
   if (as_it_is || !has_size(plan)) return plan.domain;
-  Domain region = with_walls_moved(plan.domain, walls_moved_by(plan.scene));
+  Domain region = with_walls_moved(plan.domain, sum_rounded_up(walls_moved_by(plan.scene), margin));
   if (plan.scene.is_periodic()) std::get<Box>(region).corner = std::get<Box>(plan.domain).corner;
   return region;
 }

@@ -10,6 +10,12 @@ namespace bernal {
 // packing, `run` carries it out, and from there on all lengths are those of the scene again. This is the only
 // place that leads from one to the other; where the scene asks for no gap there is nothing to lead.
 
+// The same is done where walls are the surface of a CAD file: as far as that may come inside of its
+// triangles, those are moved.
+
+/// Whether there is anything to lead.
+inline bool needs_room(const Plan& plan) { return plan.scene.asks_for_gaps() || margin_of(plan.domain) > 0; }
+
 /// What a sphere has around it: half the gap.
 inline double coat_of(const Scene& scene) { return 0.5 * scene.gap; }
 

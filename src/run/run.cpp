@@ -73,7 +73,7 @@ class Run {
  public:
   Run(const Plan& plan, const RunOptions& options, Packing& packing)
       : stated_(plan),
-        with_room_(plan.scene.asks_for_gaps() ? std::optional(plan_with_room(plan)) : std::nullopt),
+        with_room_(needs_room(plan) ? std::optional(plan_with_room(plan)) : std::nullopt),
         plan_(with_room_ ? *with_room_ : plan),
         scene_(plan_.scene),
         monitor_(options.monitor),

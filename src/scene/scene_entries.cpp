@@ -208,6 +208,11 @@ const std::vector<Entry>& container_entries() {
                                                                "of STEP, IGES and BREP: how far triangles "
                                                                "may lie from the true surface; if absent "
                                                                "a fiftieth of the smallest radius")),
+                    unless("false",
+                           flag(&MeshFile::true_surface, "true_surface",
+                                "true: of STEP, IGES and BREP: spheres lie inside the surface itself, as "
+                                "is proven, not inside of its triangles, which are a thousandth of the "
+                                "smallest radius from it unless \"deflection\" says otherwise")),
                     names(repair(), "repair",
                           "what may be done to a surface that is no wall: close holes, cut out "
                           "self-intersections, wrap it",

@@ -1,0 +1,86 @@
+// Scenes whose spheres are to lie inside the surface of a CAD file itself.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "bernal/cad/read_mesh.hpp"
+#include "bernal/core/error.hpp"
+#include "bernal/result/write_packing.hpp"
+#include "bernal/run/run.hpp"
+#include "bernal/verify/certificate.hpp"
+#include "cad/read/polygon_soup.hpp"
+#include "support/folder.hpp"
+#include "support/plans.hpp"
+
+namespace bernal {
+namespace true_surface_scene_test {
+
+class TrueSurfaceScene : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (cad::read_with_opencascade(std::string(meshes) + "frustum.brep", 1)
+            .failure.find("without OpenCASCADE") != std::string::npos)
+      GTEST_SKIP() << "built without OpenCASCADE";
+  }
+
+  static constexpr const char* meshes = BERNAL_DATA "/meshes/";
+
+  static std::string scene(const std::string& file, const std::string& more, const std::string& radius) {
+    return "unit = \"mm\"\n[container]\nkind = \"mesh\"\nfile = \"" + file + "\"\ntrue_surface = true\n" +
+           more + "\n[spheres]\nradius = " + radius + "\ncount = 40\n";
+  }
+
+  static std::string refusal(const std::string& toml) {
+    try {
+      testing::plan_of(toml);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  }
+};
+
+// However coarse the triangles are: what they are off is kept from the walls.
+TEST_F(TrueSurfaceScene, SpheresAreCertifiedInsideTheSurface) {
+  for (const char* deflection : {"", "deflection = 0.05", "deflection = 0.5"}) {
+    const Plan plan =
+        testing::plan_of(scene(std::string(meshes) + "block_fillets_bore.step", deflection, "2.5"));
+    const Packing packing = run(plan, {.seed = 1});
+    EXPECT_EQ(packing.spheres.size(), 40U);
+    const Certificate certificate = certify(packing.spheres, packing.domain);
+    EXPECT_TRUE(certificate.certified) << certificate.statement;
+    EXPECT_NE(certificate.statement.find("of the CAD surface by proven bounds"), std::string::npos);
+    EXPECT_NE(certified_walls(packing.scene, packing.domain).find("the surface of the CAD file itself"),
+              std::string::npos);
+    if (*deflection == '\0') {
+      EXPECT_LE(margin_of(packing.domain), 1e-3 * 2.5);
+    }
+  }
+}
+
+TEST_F(TrueSurfaceScene, WhatDoesNotGoWithItIsRefused) {
+  const std::string block = std::string(meshes) + "block_fillets_bore.step";
+  EXPECT_NE(
+      refusal(scene(block, "obstacles = [{ kind = \"sphere\", radius = 2, center = [40, 20, 10] }]", "1"))
+          .find("obstacles make other walls"),
+      std::string::npos);
+  EXPECT_NE(refusal(scene(block, "cap = \"z = 10\"", "1")).find("cap changes its walls"), std::string::npos);
+  EXPECT_NE(refusal(scene(std::string(meshes) + "hopper.stl", "", "0.1")).find("holds triangles"),
+            std::string::npos);
+}
+
+// A corner that is known to half a unit could let a sphere of that size out.
+TEST_F(TrueSurfaceScene, AToleranceLargerThanASphereIsRefused) {
+  std::string brep = testing::text_of(std::filesystem::path(meshes) / "frustum.brep");
+  const std::string sharp = "\nVe\n1e-07\n";
+  const std::size_t at = brep.find(sharp);
+  ASSERT_NE(at, std::string::npos);
+  brep.replace(at, sharp.size(), "\nVe\n0.5\n");
+  const testing::Folder folder;
+  const std::string file = folder.write("loose.brep", brep).string();
+  EXPECT_NE(refusal(scene(file, "", "0.4")).find("known to 0.5 mm only"), std::string::npos);
+  EXPECT_EQ(refusal(scene(file, "", "1.5")), "");
+}
+
+}  // namespace true_surface_scene_test
+}  // namespace bernal
