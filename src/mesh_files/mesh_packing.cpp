@@ -150,17 +150,19 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
                                             .gap = options.gap,
                                             .bridge_radius = options.bridge_radius,
                                             .bridge_angle = options.bridge_angle,
-                                            .shells = shells_of(packing, options)},
+                                            .shells = shells_of(packing, options),
+                                            .clear_of_ends = true},
                                            options.neck_edge, monitor);
   report.gaps_at_edges = in_walls.gaps_at_edges;
   report.wall_deviation = in_walls.wall_deviation;
   Solids& solids = in_walls.solids;
+  report.cleared = solids.cleared;
   if (options.cut.empty()) return {std::move(solids), {}};
   CutOut part = cut_out(solids, box_in(options.cut, packing.scene.unit), options.gap);
   if (part.solids.spheres.empty()) refuse("there are no spheres in the box of ‹cut›");
   report.spheres = part.solids.spheres.size();
   report.domain_volume = volume_of(part.solids.domain);
-  report.cleared = part.shrunk;
+  report.cleared = part.solids.cleared;
   for (const Piece& piece : part.solids.pieces) report.clipped += !piece.cuts.empty();
   return {std::move(part.solids), std::move(part.of_packing)};
 }

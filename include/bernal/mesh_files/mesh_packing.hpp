@@ -81,7 +81,8 @@ struct BedMeshReport {
   std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
   std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
   std::size_t clipped = 0;        ///< spheres that the faces of a box cut out of the packing clip
-  std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
+  /// Spheres that are smaller, themselves or their layers, as a face or an end of a period nearly touched them.
+  std::size_t cleared = 0;
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
   std::size_t gaps_at_edges = 0;
   /// How far triangles of walls are off those of a CAD part, or off round walls of a solid of revolution.
