@@ -58,8 +58,8 @@ FewPacked pack_few(const std::vector<double>& radii, const Container& container,
 /// than there are as long as there is one. What stands is the start of the drawn sequence, with gaps of a
 /// thousand roundings of a coordinate at least: so it finds a place for all where the tightest arrangement
 /// leaves a play of 1e-9 and is found. Of those that nobody asked for by number each is worth an eighth of a
-/// search; `Reporter::account` says that one more was tried. Returns `full` for an open target then,
-/// `converged` where all stand, else `end`.
+/// search, and of many less; `Reporter::account` says that one more was tried. Returns `full` for an open
+/// target then, `converged` where all stand, else `end`.
 StageEnd place_few(StageEnd end, SpheresInBed& in_bed, Reporter& report);
 
 }  // namespace bernal
