@@ -33,10 +33,12 @@ std::string text_of_place(const Vector<3>& p) {
 void print_surface(const BedMeshReport& report, std::string_view unit) {
   fmt::print("spheres      {}; {} bridges", grouped(report.spheres), grouped(report.necks));
   if (report.clipped > 0) fmt::print("; {} cut by faces of the box", grouped(report.clipped));
-  if (report.cleared > 0) fmt::print(", {} made smaller, which nearly touched it", grouped(report.cleared));
+  if (report.cleared > 0)
+    fmt::print("; {} that {} nearly touches made smaller there", grouped(report.cleared),
+               report.clipped > 0 ? "a face of the box" : "an end of a period");
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for, by up to {:.0f} %, so that they stay apart",
-               grouped(report.shrunk_necks), 100 * report.largest_shrink);
+               grouped(report.shrunk_necks), 100 * report.largest_neck_shrink);
   if (report.cut_fillets > 0) fmt::print(", {} cylinders at ends of periods", grouped(report.cut_fillets));
   if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
   if (report.deepened_caps > 0) fmt::print(", {} caps deeper than asked for", grouped(report.deepened_caps));
@@ -45,7 +47,7 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
                grouped(report.gaps_at_edges));
   if (report.shrunk_spheres > 0)
     fmt::print("; {} smaller than packed, by up to {:.2g} %", grouped(report.shrunk_spheres),
-               100 * report.largest_shrinking);
+               100 * report.largest_sphere_shrink);
   if (report.wall_deviation > 0)
     fmt::print("\nwalls        triangles of curved walls, about {:.3g} {} off them at most",
                report.wall_deviation, unit);

@@ -85,8 +85,8 @@ void print(const Certificate& c, const std::optional<ZonesInPlace>& zones, const
   if (c.allowed_overlap > 0) say(stdout, " by more than {:g}", c.allowed_overlap);
   if (c.worst_pair) say(stdout, "; worst: {}, overlap ratio {:.3g}", worst_pair_text(c), c.max_overlap);
   if (has_walls(domain))
-    say(stdout, "\nwalls      {} near, {} spheres protruding", grouped(c.walls_tested),
-        grouped(c.protruding_spheres));
+    say(stdout, "\nwalls      {} {}, {} spheres protruding", grouped(c.walls_tested),
+        walls_tested_are_near(domain) ? "near" : "decided, near or far", grouped(c.protruding_spheres));
   if (c.worst_wall)
     say(stdout, "; worst: sphere {}, gap {:.3g} of its radius", *c.worst_wall, c.min_wall_gap);
   if (c.gap + c.wall_gap > 0) {
@@ -99,7 +99,7 @@ void print(const Certificate& c, const std::optional<ZonesInPlace>& zones, const
   say(stdout, "\ndecided    {} in double with a proven bound, {} in exact arithmetic, in {:.3f} s\n",
       grouped(c.decided_double), grouped(c.decided_exact), c.seconds);
   for (const Certificate::Level& level : c.levels)
-    say(stdout, "inside     {}: {} pairs near, {} overlapping, {} walls near, {} protruding, {} misplaced\n",
+    say(stdout, "inside     {}: {} pairs near, {} overlapping, {} walls, {} protruding, {} misplaced\n",
         level.name, grouped(level.pairs_tested), grouped(level.overlapping_pairs),
         grouped(level.walls_tested), grouped(level.protruding_spheres), grouped(level.misplaced));
   if (zones)

@@ -56,7 +56,7 @@ void take_surface(const ConformingSurface& surface, BedMeshReport& report) {
   report.least_triangle_angle = stated.least_angle;
   report.place_of_least_angle = stated.place_of_least_angle;
   report.shrunk_necks = stated.shrunk_necks;
-  report.largest_shrink = stated.largest_shrink;
+  report.largest_neck_shrink = stated.largest_shrink;
   report.cut_fillets = stated.cut_fillets;
   report.widened_necks = stated.widened_necks;
   report.deepened_caps = stated.deepened_caps;
@@ -150,17 +150,19 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
                                             .gap = options.gap,
                                             .bridge_radius = options.bridge_radius,
                                             .bridge_angle = options.bridge_angle,
-                                            .shells = shells_of(packing, options)},
+                                            .shells = shells_of(packing, options),
+                                            .clear_of_ends = true},
                                            options.neck_edge, monitor);
   report.gaps_at_edges = in_walls.gaps_at_edges;
   report.wall_deviation = in_walls.wall_deviation;
   Solids& solids = in_walls.solids;
+  report.cleared = solids.cleared;
   if (options.cut.empty()) return {std::move(solids), {}};
   CutOut part = cut_out(solids, box_in(options.cut, packing.scene.unit), options.gap);
   if (part.solids.spheres.empty()) refuse("there are no spheres in the box of ‹cut›");
   report.spheres = part.solids.spheres.size();
   report.domain_volume = volume_of(part.solids.domain);
-  report.cleared = part.shrunk;
+  report.cleared = part.solids.cleared;
   for (const Piece& piece : part.solids.pieces) report.clipped += !piece.cuts.empty();
   return {std::move(part.solids), std::move(part.of_packing)};
 }
@@ -172,7 +174,7 @@ void take_spheres(const Packing& packing, const Solids& solids, const std::vecto
     const double packed = packing.spheres.r[of_packing.empty() ? i : of_packing[i]];
     if (!(solids.spheres.r[i] < packed)) continue;
     ++report.shrunk_spheres;
-    report.largest_shrinking = std::max(report.largest_shrinking, 1 - solids.spheres.r[i] / packed);
+    report.largest_sphere_shrink = std::max(report.largest_sphere_shrink, 1 - solids.spheres.r[i] / packed);
   }
   if (of_packing.empty())
     report.packed_porosity = 1 - volume_of_balls(packing.spheres) / report.domain_volume;
@@ -274,8 +276,10 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   }
   FillReport filled;
   VolumeMesh mesh = filled_mesh(surface, solids, options, filled, monitor, report);
-  report.parts.push_back({filled.sections == 1 ? "fill" : fmt::format("fill in {} sections", filled.sections),
-                          filled.seconds, filled.peak_bytes});
+  const std::string way = filled.sections > 1      ? fmt::format("fill in {} sections", filled.sections)
+                          : filled.sections_failed ? "fill as a whole, since a section failed"
+                                                   : "fill";
+  report.parts.push_back({way, filled.seconds, filled.peak_bytes});
   report.parts.push_back({"improve", filled.seconds_improving});
   if (options.order == 2) {
     const Stopwatch curving;
@@ -295,6 +299,9 @@ fs::path file_named(const MeshFormat& format, const fs::path& named) {
     if (named.extension() == other.ending && other.ending != format.ending)
       refuse(fmt::format("files of {} end in {}, those of {} in {}", other.name, other.ending, format.name,
                          format.ending));
+  if (format.ending != ".foam" && named.extension() != format.ending)
+    refuse(fmt::format("files of {} end in {}, unlike {}", format.name, format.ending,
+                       plain_text(named.filename().string())));
   if (format.ending != ".foam" || (named.extension() == format.ending && !fs::is_directory(named)))
     return named;
   fs::path folder = fs::absolute(named).lexically_normal();

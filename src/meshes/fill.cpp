@@ -40,6 +40,7 @@ VolumeMesh fill(const ConformingSurface& surface, const TetrahedraOptions& optio
       report.sections = cuts.count();
     } catch (const Error& error) {  // lids of a section may cross walls that are not convex
       if (error.code() != ErrorCode::bad_mesh) throw;
+      report.sections_failed = true;
     }
   if (report.sections == 1) {
     mesh = run_tetgen(surface, tetgen, report.peak_bytes, monitor);

@@ -18,7 +18,8 @@ struct TetrahedraOptions {
 struct FillReport {
   double seconds = 0;        ///< in the mesher, with its files written and read
   double peak_bytes = 0;     ///< of the mesher, of as many as run at once
-  std::size_t sections = 1;  ///< 1: filled at once, also where sections failed
+  std::size_t sections = 1;  ///< 1: filled at once
+  bool sections_failed = false;
   double seconds_improving = 0;
   ImproveReport improvements;
   double volume_error = 0;  ///< of a region against that between its triangles, over the volume; the largest

@@ -102,10 +102,10 @@ std::string caution_of_porosity(const Plan& plan) {
 std::string caution_of_guess(const Plan& plan) {
   const std::optional<std::uint64_t> error = give_or_take(plan);
   if (!error) return {};
-  return fmt::format(
-      "walls are near everywhere: that {} fit is known to give or take {}; fill = true in "
-      "[spheres] places as many as can be made to fit",
-      grouped(static_cast<std::uint64_t>(std::llround(plan.expected_count))), grouped(*error));
+  return fmt::format("walls are near everywhere: that {} fit is known to give or take {}; {}",
+                     grouped(static_cast<std::uint64_t>(std::llround(plan.expected_count))), grouped(*error),
+                     is_tried(plan) ? "how many do is found by trial"
+                                    : "fill = true in [spheres] places as many as can be made to fit");
 }
 
 std::string caution_of_size(const Plan& plan) {

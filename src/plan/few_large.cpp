@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
+#include "bernal/soft/relax.hpp"
+#include "jam/few_spheres.hpp"
 #include "plan/estimate.hpp"
 #include "sizes/volume_carriers.hpp"
 
@@ -64,6 +66,13 @@ std::string remedy_of(const FewLarge& few, double count, const Scene& scene, con
 bool is_guess(const Plan& plan) {
   return plan.places_expected && plan.scene.target.is_open() &&
          error_between_walls(plan.domain, *plan.radii) >= a_guess;
+}
+
+bool is_tried(const Plan& plan) {
+  const Scene& scene = plan.scene;
+  const double most = (1 + error_between_walls(plan.domain, *plan.radii)) * plan.expected_count;
+  return is_guess(plan) && !scene.is_periodic() && scene.stages.back().as<Relax>() &&
+         most < static_cast<double>(most_few);
 }
 
 std::optional<std::uint64_t> give_or_take(const Plan& plan) {

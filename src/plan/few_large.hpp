@@ -29,7 +29,10 @@ std::string remedy_of(const FewLarge&, double count, const Scene& scene, const V
 /// Whether as many spheres are to be placed as are expected or fit, and walls are so near everywhere that how
 /// many that are is a guess.
 bool is_guess(const Plan& plan);
-/// Then, where as many as are expected are wanted: how many these may be too few or too many, at least one.
+/// Whether one more is tried after the other then, as they are few: see `place_few`.
+bool is_tried(const Plan& plan);
+/// Of a guess, where as many as are expected are wanted: how many these may be too few or too many, at least
+/// one.
 std::optional<std::uint64_t> give_or_take(const Plan& plan);
 
 }  // namespace bernal

@@ -220,7 +220,9 @@ void write_certificate(Page& page, const Report& report) {
       walls ? " or “does this sphere cross this piece of wall?”" : "");
   page.row("pairs of spheres", grouped(c.pairs_tested), "near enough to need a decision");
   if (walls) {
-    page.row("spheres and pieces of wall", grouped(c.walls_tested), "near enough to need a decision");
+    page.row("spheres and pieces of wall", grouped(c.walls_tested),
+             walls_tested_are_near(report.packing.domain) ? "near enough to need a decision"
+                                                          : "each sphere with each wall, however far away");
     page.row("centres", grouped(c.centers_tested), "whose side of the wall was decided");
   }
   page.row("decided in ordinary arithmetic", grouped(c.decided_double), "with a proven error bound");

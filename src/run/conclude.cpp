@@ -57,7 +57,7 @@ std::string larger(double factor) {
 }
 
 /// Where it is left open how many spheres there are: what the stages place is what was asked for, unless it
-/// is far from what was to be expected.
+/// is far from what was to be expected. `fills`: they have tried to place one more.
 Conclusion of_open_target(const Packing& packing, bool fills, StageEnd end, const Ending& ending) {
   const std::size_t n = packing.spheres.size();
   const Plan& plan = ending.plan;
@@ -77,7 +77,7 @@ Conclusion of_open_target(const Packing& packing, bool fills, StageEnd end, cons
                         "use smaller ones or check the units",
                         counted(n), are(n), fraction(phi), fraction(ending.close_packing))};
   std::string guess;  // where walls are everywhere
-  if (const auto error = give_or_take(plan); error && !plan.scene.target.bed.gives_height())
+  if (const auto error = give_or_take(plan); error && !fills && !plan.scene.target.bed.gives_height())
     guess = fmt::format(", give or take {}: fill = true may place more", grouped(*error));
   if (end == StageEnd::converged && !fills && ending.places_expected)
     return {Outcome::converged,
@@ -146,7 +146,10 @@ Conclusion of_bed(const Packing& packing, const SpheresInBed& in_bed, const Repo
     return {Outcome::hit_limit, all_placed(n) + ", but the last stage reached its limit"};
   }
   if (end == StageEnd::hit_limit) return limit_reached(n);
-  if (target.is_open()) return of_open_target(packing, target.fill, end, ending);
+  if (target.is_open()) {
+    const bool tried_one_more = end == StageEnd::full && !report.account.empty();
+    return of_open_target(packing, target.fill || tried_one_more, end, ending);
+  }
   if (target.count)
     return {Outcome::full,
             fmt::format("{}; {}", some_placed(n, static_cast<std::size_t>(*target.count)), why_no_more(end))};

@@ -3,16 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
+#include "jam/few_spheres.hpp"
 #include "plan/made_plan.hpp"
 #include "run/begin_packing.hpp"
 #include "run/run_insides.hpp"
+#include "plan/room_for_gaps.hpp"
+#include "run/run_stages.hpp"
+#include "work/supply.hpp"
 
 namespace bernal {
 namespace {
@@ -20,6 +27,8 @@ namespace {
 /// How much larger the spheres of the next run are, until one fails; and to what the largest that the stages
 /// place are known: well below the gaps of up to 1e-4 that relaxation leaves.
 constexpr double step = 1.05, known_to = 2e-5;
+/// How much smaller few spheres are than the tightest arrangement of them allows: play for roundings.
+constexpr double play = 1e-10;
 /// Steps down to sizes that can be placed, at most.
 constexpr int most_steps_down = 60;
 /// Seeds from which a size is tried before it counts as too large: few spheres take no time, and how they
@@ -40,6 +49,8 @@ class Search {
     if (options_.checkpoints.resume && options_.checkpoints.tell)
       options_.checkpoints.tell("the search for the largest spheres has no checkpoints; it starts anew");
     double scale = plan_.scene.scale;
+    if (const std::optional<double> of_few = scale_of_few(); of_few && fits(*of_few, 1)) return concluded();
+    minima_of_few_ = 0;
     for (int down = 0; !fits(scale, few_) && !stopped_; scale /= step) {
       too_large_ = scale;
       if (++down > most_steps_down) break;
@@ -51,6 +62,11 @@ class Search {
       too_large_.reset();
     }
     if (!best_) return last_ ? std::move(*last_) : run_spheres(build(scene_at(scale)), sub_options(0));
+    return concluded();
+  }
+
+ private:
+  Packing concluded() {
     Packing packing = std::move(*best_);
     packing.outcome = stopped_ ? Outcome::cancelled : Outcome::converged;
     packing.reason = in_words(packing);
@@ -61,7 +77,34 @@ class Search {
     return packing;
   }
 
- private:
+  /// On which the tightest arrangement that is found of few spheres leaves a little play. The stage finds the
+  /// same one, as it searches by the same seed. Nothing where they are not few, where the stages do not
+  /// search that way, and where sizes have no end or gaps around them that do not grow with them.
+  std::optional<double> scale_of_few() {
+    const Scene& scene = plan_.scene;
+    const auto count = static_cast<std::size_t>(*scene.target.count);
+    if (!packs_few(scene) || needs_room(plan_) || !scene.draw || !std::isfinite(plan_.radii->max()))
+      return {};
+    const Frame frame = frame_of(plan_.domain);
+    const std::shared_ptr<const Container> container =
+        plan_.container ? plan_.container : make_local_container(plan_.domain, frame, scene.walls);
+    if (!are_few(count, *container)) return {};
+    const std::uint64_t seed = *sub_options(0).seed;
+    Supply supply({*plan_.radii, scene.dimension(), seed, *scene.draw}, volume_of(plan_.domain),
+                  scene.target);
+    supply.divide_by(frame.scale);
+    const FewPacked packed =
+        pack_few(supply.radii(), *container, Places(*container),
+                 {.enough = std::numeric_limits<double>::infinity(),
+                  .seed = seed,
+                  .monitor = options_.monitor,
+                  .tell = [&](double done, double size) { tell(std::max(size, 1e-3) * scene.scale, done); }});
+    minima_of_few_ = packed.minima;
+    stopped_ = packed.cancelled;
+    if (!(packed.size > 0)) return {};
+    return (1 - play) * packed.size * scene.scale;
+  }
+
   /// Steps up until few seeds place no spheres that large, each twice the one before but the largest, and
   /// halves what is between.
   void narrow_down() {
@@ -98,7 +141,7 @@ class Search {
 
   /// Whether one of so many seeds places all spheres; keeps its packing.
   bool fits(double scale, int tries) {
-    tell(scale, tries);
+    tell(scale, tries == many_ ? 0.7 : share_halved());
     const std::optional<Plan> plan = made_plan_where_all_fit(scene_at(scale));
     if (!plan) return false;
     for (int n = 0; n < tries && !stopped_; ++n) {
@@ -132,18 +175,24 @@ class Search {
         "{} of {}, {} {} placed", n == 1 ? "the sphere" : grouped(n) + " spheres", size_in_words(*fitting_),
         n == 1 ? "as large as it fits," : "the largest found,", n == 1 ? "is" : "are");
     if (stopped_) return "stopped by the user: " + text + ", and larger ones may fit";
+    if (minima_of_few_ > 0)
+      return text +
+             fmt::format("; of {} arrangements none had room for larger ones", grouped(minima_of_few_));
     return text + fmt::format("; at {} none of {} seeds placed all",
                               size_in_words(*fitting_ * (1 + known_to)), many_);
   }
 
-  void tell(double scale, int tries) const {
-    double done = 0;
-    if (fitting_ && too_large_)  // halvings that are done, of those that there are in all
-      done = 0.6 * std::clamp(1 - std::log(std::log(*too_large_ / *fitting_) / known_to) /
-                                      std::log(std::log(step) / known_to),
-                              0.0, 1.0);
+  /// Of the halvings that there are in all, those that are done.
+  double share_halved() const {
+    if (!fitting_ || !too_large_) return 0;
+    return 0.6 * std::clamp(1 - std::log(std::log(*too_large_ / *fitting_) / known_to) /
+                                    std::log(std::log(step) / known_to),
+                            0.0, 1.0);
+  }
+
+  void tell(double scale, double done) const {
     options_.monitor.report(
-        {"largest", tries == many_ ? 0.7 : done,
+        {"largest", done,
          in_dimension(plan_.scene.dimension(),
                       *plan_.scene.target.count == 1
                           ? "1 sphere of " + size_in_words(scale)
@@ -157,7 +206,7 @@ class Search {
   const int many_, few_;  // seeds
   const Stopwatch watch_;
   bool stopped_ = false, best_is_first_ = true;
-  std::uint64_t runs_ = 0;
+  std::uint64_t runs_ = 0, minima_of_few_ = 0;
   int winner_ = 0;
   std::optional<double> fitting_, too_large_;  // scales
   std::optional<Packing> best_, last_;

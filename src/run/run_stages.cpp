@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include "bernal/soft/relax.hpp"
+#include "jam/few_spheres.hpp"
 #include "plan/stages.hpp"
 #include "work/exact_fit.hpp"
 
@@ -53,6 +55,13 @@ StageEnd run_in_box(const Stage& stage, const std::optional<BedKeepsake>& bed, S
 }
 
 }  // namespace
+
+bool packs_few(const Scene& scene) {
+  const Stage& last = scene.stages.back();
+  const StageTraits& traits = table_of(last).traits;
+  if (scene.is_periodic() || !traits.stands_in_bed(scene)) return false;
+  return scene.dimension() == 2 ? traits.reaches == Reaches::settled : last.as<Relax>() != nullptr;
+}
 
 StageEnd run_stages(const Scene& scene, SpheresOfRun& spheres, Reporter& report, Checkpoints& checkpoints,
                     std::optional<Pressing>& pressed) {
@@ -105,6 +114,12 @@ StageEnd run_stages(const Scene& scene, SpheresOfRun& spheres, Reporter& report,
     last_pressed.after_stage(n, bed_of(spheres));
     if (in_bed) report.milestone(stage.name(), *bed_of(spheres));
   }
+  // Discs are relaxed by no stage.
+  const auto* in_bed_last = bed_of(spheres);
+  const std::size_t settled = in_bed_last ? in_bed_last->size() : 0;
+  if (in_bed_last && end != StageEnd::cancelled && scene.dimension() == 2 && packs_few(scene) &&
+      (!scene.target.is_open() || scene.target.fill))
+    end = place_few(end, std::get<SpheresInBed>(spheres), report);
   if (end != StageEnd::cancelled) {
     auto* in_box = std::get_if<SpheresInBox>(&spheres);
     if (in_box && in_box->spheres.size() == in_box->supply->wanted()) fit_exactly(*in_box);
@@ -112,6 +127,7 @@ StageEnd run_stages(const Scene& scene, SpheresOfRun& spheres, Reporter& report,
     checkpoints.write_if_long();
   }
   pressed = last_pressed.by();
+  if (in_bed_last && bed_of(spheres)->size() > settled) pressed.reset();
   if (auto* in_bed = std::get_if<SpheresInBed>(&spheres)) end = leave_out_tail(*in_bed, report, end, pressed);
   return end;
 }

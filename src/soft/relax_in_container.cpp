@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/parallel.hpp"
+#include "jam/few_spheres.hpp"
 #include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "soft/crowd.hpp"
@@ -304,7 +305,7 @@ StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter
       const EffectTimer timer(report.effects["relaxation"]);
       return Relaxation(in_bed, report, options).run();
     };
-    return insert_what_else_fits(in_bed, report, relax());
+    return place_few(insert_what_else_fits(in_bed, report, relax()), in_bed, report);
   };
   if (step != Step::finish) end = relaxed();
   step = Step::finish;

@@ -6,13 +6,11 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "solids/near_faces.hpp"
 #include "voxels/ball_in_cells.hpp"
 
 namespace bernal {
 namespace {
-
-/// The lowest cap that a face of the box cuts off or leaves, in radii: lower ones end in too sharp an edge.
-constexpr double least_cap = 0.03;
 
 [[noreturn]] void refuse_cut(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
 
@@ -47,40 +45,6 @@ void require_within(const Domain& domain, const Bounds<3>& box) {
       refuse_cut(fmt::format("the box of ‹cut› reaches out of the container at ({:.6g}, {:.6g}, {:.6g})",
                              p[0], p[1], p[2]));
   }
-}
-
-/// Distances of the faces, edges and corners of a box from a point.
-std::vector<double> distances_of(const Bounds<3>& box, const Vector<3>& p) {
-  // Of each axis: a face at its lower end, at its upper end, or none.
-  std::vector<double> squares;
-  for (int which = 1; which < 27; ++which) {
-    double square = 0;
-    bool is_beside = true;  // whether the nearest point of the plane, line or corner lies on the box
-    for (int k = 0, rest = which; k < 3; ++k, rest /= 3) {
-      const double at = rest % 3 == 1 ? box.lower[k] : box.upper[k];
-      if (rest % 3 == 0) {
-        is_beside = is_beside && p[k] >= box.lower[k] && p[k] <= box.upper[k];
-      } else {
-        square += (p[k] - at) * (p[k] - at);
-      }
-    }
-    if (is_beside) squares.push_back(std::sqrt(square));
-  }
-  return squares;
-}
-
-/// The radius with which a sphere is well off all that it nearly touches, or that cut less than a cap of the
-/// height `lowest` off, in radii.
-double radius_clear_of(const std::vector<double>& distances, double radius, double gap, double lowest) {
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const double distance : distances)
-      if (distance - radius < gap * radius && radius - distance < lowest * radius) {
-        radius = std::nextafter(distance / (1 + gap), 0.0);
-        changed = true;
-      }
-  }
-  return radius;
 }
 
 double distance_to(const Bounds<3>& box, const Vector<3>& p) {
@@ -145,9 +109,10 @@ CutOut cut_out(const Solids& whole, const Bounds<3>& given, double gap) {
         for (int z = first[2]; z <= last[2]; ++z) {
           const Vector<3> image = center + Vector<3>(x, y, z).cwiseProduct(boundary.edges);
           if (!(distance_to(bounds, image) < r)) continue;
-          const std::vector<double> distances = distances_of(bounds, image);
-          const double radius = radius_clear_of(distances, r, gap, std::max(gap, least_cap));
-          made.shrunk += radius < r;
+          double radius = r;
+          const std::span<const double> within = whole.shells.of(i);
+          std::vector<double> layers(within.begin(), within.end());
+          solids.cleared += NearFaces(bounds, image).clear(radius, layers, gap);
           std::optional<Piece> piece = piece_in_box(image, radius, bounds);
           if (!piece) continue;
           piece->sphere = static_cast<std::uint32_t>(solids.spheres.size());
@@ -155,8 +120,7 @@ CutOut cut_out(const Solids& whole, const Bounds<3>& given, double gap) {
           solids.spheres.push_back(image, radius);
           made.of_packing.push_back(i);
           if (solids.shells.first.empty()) continue;
-          for (const double shell : whole.shells.of(i))
-            solids.shells.radius.push_back(radius_clear_of(distances, shell * radius / r, gap, gap));
+          solids.shells.radius.insert(solids.shells.radius.end(), layers.begin(), layers.end());
           solids.shells.first.push_back(solids.shells.radius.size());
         }
   }

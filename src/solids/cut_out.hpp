@@ -12,13 +12,10 @@ namespace bernal {
 struct CutOut {
   Solids solids;
   std::vector<std::uint32_t> of_packing;
-  std::size_t shrunk = 0;  ///< spheres that a face, an edge or a corner nearly touched
 };
 
-/// Cuts what is within a box out of solids, with images where their domain repeats itself. A sphere that
-/// reaches beyond a face, an edge or a corner of the box by less than 0.03 radii, or is nearer to it than
-/// `gap`, in radii, is made smaller, so that it is that far off: no mesh would be good there. Layers
-/// likewise, where they are nearer to such than the gap.
+/// Cuts what is within a box out of solids, with images where their domain repeats itself. Spheres and layers
+/// that the box nearly touches are made smaller, see `NearFaces`.
 ///
 /// Throws Error{bad_argument} for a box that is empty or not within the container, and for bridges and caps.
 /// Precondition: the container is a box, a cylinder, both periodic or not, or a sphere. Cost: O(N).

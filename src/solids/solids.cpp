@@ -12,6 +12,7 @@
 #include "bernal/core/tolerance.hpp"
 #include "measure/touching.hpp"
 #include "near/point_grid.hpp"
+#include "solids/near_faces.hpp"
 #include "verify/exact.hpp"
 
 namespace bernal {
@@ -326,6 +327,7 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   made.end_distance = ends.distance;
   made.domain = ends.domain;
   wrap(made.spheres, made.domain);
+  if (shrinks && options.clear_of_ends) clear_of_ends(made, options.gap);
   made.pieces = pieces_of(made.spheres, made.domain);
   if (shrinks) {
     // Moved images were rounded, so the gap is proven again.

@@ -29,6 +29,10 @@ struct InnerSpheres {
     if (first.empty()) return {};
     return {radius.data() + first[sphere], radius.data() + first[sphere + 1]};
   }
+  std::span<double> of(std::size_t sphere) {
+    if (first.empty()) return {};
+    return {radius.data() + first[sphere], radius.data() + first[sphere + 1]};
+  }
 };
 
 /// InnerSpheres of spheres that have other radii now.
@@ -49,6 +53,7 @@ struct Solids {
   InnerSpheres shells = {};  ///< which shrink as their spheres do
   /// Whether the domain is a box cut out of a packing: without periods, and its faces cut spheres.
   bool is_cut = false;
+  std::size_t cleared = 0;  ///< spheres that are smaller for being nearly touched by an end or a cut
 };
 
 struct SolidsOptions {
@@ -59,6 +64,7 @@ struct SolidsOptions {
   /// begin. 0: none.
   double bridge_angle = 0;
   InnerSpheres shells = {};
+  bool clear_of_ends = false;  ///< of periods, with gap and shrink: see `clear_of_ends`
 };
 
 /// Prepares spheres for a mesher. Proven, in exact arithmetic on the given doubles: for gap and shrink what

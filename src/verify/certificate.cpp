@@ -311,6 +311,11 @@ void refuse(Certificate& c, const std::string& fault) {
   c.certified = false;
 }
 
+bool walls_tested_are_near(const Domain& domain) {
+  return std::holds_alternative<Mesh>(domain) || std::holds_alternative<Polygon>(domain) ||
+         std::holds_alternative<Revolved>(domain);
+}
+
 std::string pair_text(const std::array<std::uint64_t, 2>& pair) {
   const auto [first, second] = pair;
   return first == second ? fmt::format("{} and its own image", first)

@@ -37,7 +37,9 @@ TEST(LevelWords, LinesOfMcnpAreAsLongAsItReads) {
   write_export(layered_cylinder({0, 0, -1}), output_of("mcnp"), folder / "m");
   std::istringstream lines(text_of(folder / "m"));
   for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("c ")) EXPECT_LE(line.size(), 80u) << line;  // of comments MCNP leaves the rest
+    if (!line.starts_with("c ")) {  // of comments MCNP leaves the rest
+      EXPECT_LE(line.size(), 80u) << line;
+    }
     EXPECT_EQ((line + " ").find(" -0 "), line.npos) << line;
   }
 }

@@ -126,8 +126,10 @@ TEST(MeshCommand, PrismsStandInTheFluid) {
   if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   const Packed result;
   const auto mesh = [&](const std::string& format, const std::vector<std::string>& more) {
+    static const std::map<std::string, std::string> names = {
+        {"openfoam", "case"}, {"vtu", "bed.vtu"}, {"gmsh", "bed.msh"}, {"abaqus", "bed.inp"}};
     std::vector<std::string> words = {"mesh", result.out(), "--to",
-                                      format, "-o",         result.folder / (format + ".bed")};
+                                      format, "-o",         result.folder / names.at(format)};
     words.insert(words.end(), more.begin(), more.end());
     return bernal(words);
   };
@@ -345,6 +347,8 @@ TEST(MeshCommand, SaysWhatTheMeshIsOf) {
   }
   EXPECT_NEAR(largest, 2.5e-3, 1e-12);
   expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / "bed.msh"}), {".vtu", "gmsh"});
+  for (const char* name : {"bed.txt", "bed.VTU", "bed"})
+    expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / name}), {".vtu", name});
   expect_refused_in_one_line(
       meshed({"--to", "vtu", "-o", result.folder / "bed.vtu", "--prism-height", "0.2"}), {"--prism-height"});
   expect_refused_in_one_line(meshed({"--to", "vtu", "-o", result.folder / "bed.vtu", "--unit", "parsec"}),

@@ -1,5 +1,6 @@
 // Meshes of spheres with layers, and of second order: volumes of layers, bridges and fluid in closed form,
 // elements without folds, equal ends.
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -13,6 +14,7 @@
 #include "meshes/second_order.hpp"
 #include "process/find_program.hpp"
 #include "solids/cut_out.hpp"
+#include "solids/near_faces.hpp"
 
 namespace bernal {
 namespace layer_mesh_test {
@@ -150,6 +152,55 @@ TEST(LayerMesh, ErrorsOfSecondOrderFallWithTheFourthPowerOfEdges) {
   EXPECT_LT(before, 2e-5);
 }
 
+TEST(NearFaces, NothingIsLeftThatABoxNearlyTouches) {
+  const Bounds<3> box{.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(4, 5, 6)};
+  std::mt19937 engine(1);
+  int smaller = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Vector<3> p;
+    for (int k = 0; k < 3; ++k) p[k] = std::uniform_real_distribution(0.0, box.upper[k])(engine);
+    double radius = 1;
+    std::array<double, 2> layers = {0.9, 0.95};
+    smaller += NearFaces(box, p).clear(radius, layers, 0.01);
+    EXPECT_LE(layers[0] / layers[1], 0.9 / 0.95 + 1e-12);
+    EXPECT_LE(layers[1] / radius, 0.95 + 1e-12);
+    // The nearest places of faces, edges and corners: each coordinate its own or moved to an end.
+    for (const double r : {radius, layers[0], layers[1]})
+      for (int which = 1; which < 27; ++which) {
+        Vector<3> q = p;
+        for (int k = 0, rest = which; k < 3; ++k, rest /= 3)
+          if (rest % 3 > 0) q[k] = rest % 3 == 1 ? box.lower[k] : box.upper[k];
+        const double beyond = (r - (q - p).norm()) / r;
+        EXPECT_FALSE(-0.03 + 1e-12 < beyond && beyond < 0.06 - 1e-12) << p.transpose() << ": " << beyond;
+      }
+  }
+  EXPECT_GT(smaller, 1000);
+  double untouched = 1;
+  EXPECT_FALSE(NearFaces(box, {2, 2.5, 3}).clear(untouched, {}, 0.01));
+  EXPECT_EQ(untouched, 1);
+}
+
+TEST(NearFaces, EndsOfPeriodsLeaveNoLowCaps) {
+  const Domain period = periodic_box(Vector<3>(5, 5.5, 6));
+  const Spheres<dynamic> spheres = scattered(period, 0.3, 3000, 7);
+  ASSERT_GT(spheres.size(), 200u);
+  const Solids solids = solids_of(spheres, period,
+                                  {.contact = ContactTreatment::gap,
+                                   .gap = 0.01,
+                                   .shells = shells_in(spheres, {0.9}),
+                                   .clear_of_ends = true});
+  EXPECT_GT(solids.cleared, 0u);
+  EXPECT_LT(solids.cleared, spheres.size() / 3);
+  for (const Piece& piece : solids.pieces)
+    for (const Cut& cut : piece.cuts) {
+      const double depth = cut.keeps.offset - cut.keeps.normal.dot(piece.center);
+      EXPECT_GE(1 - depth / piece.radius, 0.06 - 1e-9);
+    }
+  double sum = 0;
+  for (const double r : solids.spheres.r) sum += ball(r);
+  EXPECT_NEAR(solids.contacts.volume_after, sum, 1e-9);
+}
+
 TEST(CutOut, BoxesHoldTheVolumesOfPartsOfBalls) {
   const Bounds<3> box{.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(2, 3, 4)};
   EXPECT_NEAR(volume_in_box(Vector<3>(1, 1, 2), 0.5, box), ball(0.5), 1e-13);
@@ -172,7 +223,7 @@ TEST(CutOut, FacesOfABoxCutSpheresAndLayers) {
     const ConformingSurface surface = conforming_surface(part.solids, {.per_gap = 4, .solids = with_solids});
     FillReport report;
     VolumeMesh mesh = fill_with_layers(surface, {}, report);
-    EXPECT_GT(quality_of(mesh).least_sicn, 0.05);
+    EXPECT_GT(quality_of(mesh).least_sicn, 0.1);
     make_second_order(mesh);
     const std::vector<double> volumes = curved_volumes_of_regions(mesh);
     double stated_sum = 0, sum = 0;

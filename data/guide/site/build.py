@@ -55,7 +55,7 @@ SECTIONS = [
          ("containers", "Many spheres in CAD parts"),
          ("large", "Large packings"), ("lists", "Lists and arrays"),
          ("engines", "Engines over MPI"), ("scale", "How relaxation scales"), ("gpu", "Relaxation on a GPU"), ("packers", "Against public packers"),
-         ("hard", "Hard cases"), ("starts", "Packings of others"), ("earlier", "Earlier measurements"))] +
+         ("records", "Few spheres against records"), ("hard", "Hard cases"), ("starts", "Packings of others"), ("earlier", "Earlier measurements"))] +
      [(f"results/{name}", f"data/results/papers/{name}/{name}.md", title) for name, title in (
          ("zhao2007", "Zhao et al. 2007"), ("han2005", "Han et al. 2005"), ("farr2013", "Farr 2013"))] +
      [("results/timings", "data/results/timings.md", "All timings"),

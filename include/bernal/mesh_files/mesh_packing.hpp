@@ -75,19 +75,21 @@ struct BedMeshReport {
   double least_edge = 0;            ///< of all triangles, as a length
   double least_triangle_angle = 0;  ///< in degrees
   Vector<3> place_of_least_angle = Vector<3>::Zero();
-  std::size_t shrunk_necks = 0;   ///< whose radius is smaller than asked for
-  double largest_shrink = 0;      ///< of their radii, over the one asked for
-  std::size_t cut_fillets = 0;    ///< that are cylinders, as ends of periods would cut or nearly touch them
-  std::size_t widened_necks = 0;  ///< whose radius is larger, so that ends of periods cut them clearly
-  std::size_t deepened_caps = 0;  ///< that are deeper than the gap asks for, for the same reason
-  std::size_t clipped = 0;        ///< spheres that the faces of a box cut out of the packing clip
-  std::size_t cleared = 0;        ///< and those that are smaller, as they nearly touched one
+  std::size_t shrunk_necks = 0;    ///< whose radius is smaller than asked for
+  double largest_neck_shrink = 0;  ///< of their radii, over the one asked for
+  std::size_t cut_fillets = 0;     ///< that are cylinders, as ends of periods would cut or nearly touch them
+  std::size_t widened_necks = 0;   ///< whose radius is larger, so that ends of periods cut them clearly
+  std::size_t deepened_caps = 0;   ///< that are deeper than the gap asks for, for the same reason
+  std::size_t clipped = 0;         ///< spheres that the faces of a box cut out of the packing clip
+  /// Spheres that are smaller, themselves or their layers, as a face or an end of a period nearly touched
+  /// them.
+  std::size_t cleared = 0;
   /// Spheres that touch walls of triangles where no bridge has room: these have a gap instead.
   std::size_t gaps_at_edges = 0;
   /// How far triangles of walls are off those of a CAD part, or off round walls of a solid of revolution.
   double wall_deviation = 0;
-  std::size_t shrunk_spheres = 0;  ///< that are smaller than in the packing, for gaps
-  double largest_shrinking = 0;    ///< of a radius, over the radius
+  std::size_t shrunk_spheres = 0;    ///< that are smaller than in the packing, for gaps
+  double largest_sphere_shrink = 0;  ///< of a radius, over the radius
 
   /// Whether the triangles are all: for formats whose files another program makes the mesh from. Then there
   /// are no tetrahedra, and volumes are those between the triangles.

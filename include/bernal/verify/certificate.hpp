@@ -48,7 +48,7 @@ struct Certificate {
 
   std::uint64_t spheres = 0;
   std::uint64_t pairs_tested = 0;    ///< near pairs
-  std::uint64_t walls_tested = 0;    ///< near pairs of a sphere and a piece of wall
+  std::uint64_t walls_tested = 0;    ///< pairs of a sphere and a piece of wall, see `walls_tested_are_near`
   std::uint64_t centers_tested = 0;  ///< centres that were located inside or outside a mesh
   std::uint64_t decided_double = 0;  ///< of the three counts above, by the filter
   std::uint64_t decided_exact = 0;   ///< of the three counts above, by exact arithmetic
@@ -159,6 +159,10 @@ Certificate certify(const SphereRows& spheres, const Domain& domain, const Certi
 
 /// Certifies no more, for a fault that is none of the spheres themselves: the statement begins with it.
 void refuse(Certificate&, const std::string& fault);
+
+/// Whether `walls_tested` counts pairs with touching bounding boxes alone, as with the many pieces of meshes,
+/// polygons and profiles. Else it counts every sphere with every wall, however far apart they are.
+bool walls_tested_are_near(const Domain&);
 
 /// "3 and 7" or "3 and its own image".
 std::string pair_text(const std::array<std::uint64_t, 2>& pair);

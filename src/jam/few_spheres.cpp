@@ -1,0 +1,282 @@
+#include "jam/few_spheres.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "jam/close_few.hpp"
+#include "jam/few_energy.hpp"
+#include "jam/lattice_places.hpp"
+#include "jam/quasi_newton.hpp"
+
+namespace bernal {
+namespace {
+
+/// Overlap ratios: at the start, at which minima are compared, and of those that are looked at closely.
+constexpr double rough = 0.05, compared = 3e-3, close = 3e-4;
+/// Of the tightest, how much looser a minimum may seem at these two and turn out to be tighter; and what is
+/// as tight as the tightest is the same again.
+constexpr double unsure = 3e-3, hardly_unsure = 3e-5, same_again = 1e-9;
+/// The search ends after so many minima a sphere, or so many multiplications.
+constexpr double minima_a_sphere = 60, most_work = 6.5e9;
+/// What a value of the energy, a solution of its equations and a look at a piece of wall cost, in these: N²
+/// and (D N)³ times, and as it stands.
+constexpr double work_a_value = 4, work_a_solution = 1.0 / 6, work_a_look = 100, spheres_of_overhead = 4;
+/// Hops in a row that find nothing tighter, until it starts anew; and, of the tightest, from where on a start
+/// is worth hops.
+constexpr int most_idle_hops = 20;
+constexpr double worth_hops = 0.98;
+constexpr int starts_that_hop = 4, starts_to_close = 30;
+/// Of what is asked for: what has less after this share of the search does not come to it.
+constexpr double hopeless = 0.95, share_to_hope = 0.25;
+constexpr int most_draws = 10'000;
+/// Of the proportions of the radii.
+constexpr int bits = 44;
+/// Of the random numbers of relaxation, beyond those of any stage.
+constexpr std::uint64_t own_stream = std::uint64_t{1} << 40;
+
+class FewSearch {
+ public:
+  FewSearch(const std::vector<double>& radii, const Container& container, const Places& places,
+            const FewWish& wish)
+      : energy_(container, radii),
+        places_(places),
+        wish_(wish),
+        random_(wish.seed, stream(Stream::relax, own_stream)),
+        of_one_size_(std::ranges::all_of(radii, [&](double r) { return r == radii.front(); })) {}
+
+  FewPacked run() {
+    for (std::uint64_t start = 0; !over(); ++start) {
+      Eigen::VectorXd point = start % 2 == 0 ? at_random() : on_lattice();
+      const double size = relaxed(point, start % 2 == 0);
+      if (start < starts_to_close) look_at(point, size);
+      if (start >= starts_that_hop && size < worth_hops * found_.size) continue;
+      look_at(point, size);
+      hop_from(point, size);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  bool over() {
+    if (found_.size >= wish_.enough || found_.cancelled) return true;
+    if (wish_.monitor.stop()) return found_.cancelled = true;
+    const double done = done_now();
+    if (wish_.tell && found_.minima % 16 == 0) wish_.tell(std::min(done, 1.0), found_.size);
+    const bool hopes = std::isinf(wish_.enough) || found_.size >= hopeless * wish_.enough;
+    return done >= (hopes ? 1 : share_to_hope);
+  }
+
+  double done_now() const {
+    const auto n = static_cast<double>(energy_.size());
+    const double value = work_a_value * (n + spheres_of_overhead) * (n + spheres_of_overhead),
+                 solution = work_a_solution * std::pow(static_cast<double>(energy_.unknowns()), 3);
+    const double work = value * static_cast<double>(newton_.evaluations()) +
+                        solution * static_cast<double>(solved_) +
+                        work_a_look * static_cast<double>(energy_.looks_at_pieces());
+    return std::max(work / most_work, static_cast<double>(found_.minima) / (minima_a_sphere * n)) /
+           wish_.effort;
+  }
+
+  /// In the container, or after many draws near it.
+  Vector<3> place() {
+    Vector<3> p = places_.draw(random_);
+    for (int k = 0; k < most_draws && !(energy_.container().clearance(p) > 0); ++k) p = places_.draw(random_);
+    return p;
+  }
+
+  Eigen::VectorXd at_random() {
+    Eigen::VectorXd point(energy_.unknowns());
+    for (std::size_t i = 0; i < energy_.size(); ++i) energy_.set_center(point, i, place());
+    energy_.set_size(point, energy_.expected_size());
+    return point;
+  }
+
+  /// Spheres of several sizes take its places as chance has it.
+  Eigen::VectorXd on_lattice() {
+    constexpr double jitter = 1e-3;
+    const double r = energy_.expected_size() * mean_radius();
+    auto sites = lattice_places(energy_.container(), energy_.size(), r, random_);
+    if (!sites) return at_random();
+    if (!of_one_size_) shuffle(*sites);
+    Eigen::VectorXd point(energy_.unknowns());
+    for (std::size_t i = 0; i < energy_.size(); ++i)
+      energy_.set_center(point, i, (*sites)[i] + jitter * r * random_way());
+    energy_.set_size(point, energy_.expected_size());
+    return point;
+  }
+
+  double mean_radius() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < energy_.size(); ++i) sum += energy_.radius(i);
+    return sum / static_cast<double>(energy_.size());
+  }
+
+  /// In the cube of edge 2 about the origin.
+  Vector<3> random_way() {
+    Vector<3> way;
+    for (double& x : way) x = random_.uniform(-1, 1);
+    return way;
+  }
+
+  template <class T>
+  void shuffle(std::vector<T>& values) {
+    for (std::size_t i = 0; i + 1 < values.size(); ++i)
+      std::swap(values[i], values[i + random_() % (values.size() - i)]);
+  }
+
+  void minimise(Eigen::VectorXd& point, double overlap, double improvement, double balance, int evaluations) {
+    energy_.set_overlap(overlap);
+    const double s = energy_.expected_size();
+    newton_.minimise(
+        point,
+        [this](const Eigen::VectorXd& at, Eigen::VectorXd& gradient) { return energy_.value(at, gradient); },
+        {.longest_move = 0.5 * s * mean_radius(),
+         .gradient = balance * overlap * s,
+         .improvement = improvement,
+         .evaluations = evaluations});
+  }
+
+  /// How tight the minimum near it is.
+  double relaxed(Eigen::VectorXd& point, bool from_afar) {
+    ++found_.minima;
+    if (from_afar) minimise(point, rough, 1e-5, 0, 300);
+    minimise(point, compared, 3e-8, 0.02, 600);
+    return size_without_load(point);
+  }
+
+  double size_without_load(const Eigen::VectorXd& point) {
+    Eigen::VectorXd gradient(point.size());
+    energy_.value(point, gradient);
+    return energy_.size_without_load(point);
+  }
+
+  /// Keeps it if it is the tightest.
+  void look_at(Eigen::VectorXd point, double size) {
+    if (size < (1 - unsure) * found_.size) return;
+    minimise(point, close, 1e-10, 0.01, 600);
+    const double closely = size_without_load(point);
+    if (closely < (1 - hardly_unsure) * found_.size) return;
+    if (std::abs(closely - closely_) < same_again * closely) return;
+    solved_ += close_few(energy_, point, 0.1 * close);
+    const double closed = energy_.size_of(point);
+    if (!(closed > found_.size)) return;
+    closely_ = closely;
+    found_.size = closed;
+    found_.centers.resize(energy_.size());
+    for (std::size_t i = 0; i < energy_.size(); ++i) found_.centers[i] = energy_.center(point, i);
+  }
+
+  void hop_from(Eigen::VectorXd& point, double size) {
+    for (int idle = 0; idle < most_idle_hops && !over();) {
+      Eigen::VectorXd other = point;
+      disturb(other);
+      const double size_there = relaxed(other, false);
+      idle = size_there > (1 + 1e-7) * size ? 0 : idle + 1;
+      if (!(size_there > size)) continue;
+      point = std::move(other);
+      size = size_there;
+      look_at(point, size);
+    }
+  }
+
+  void disturb(Eigen::VectorXd& point) {
+    constexpr double shakes_all = 0.35, shakes_some = 0.6, exchanges = 0.15;
+    if (!of_one_size_ && random_.uniform() < exchanges) return exchange(point);
+    const double kind = random_.uniform();
+    if (kind < shakes_all) {
+      const double way = (random_.uniform() < 0.5 ? 0.4 : 0.8) * random_.uniform(0.3, 1);
+      shake(point, place(), std::numeric_limits<double>::infinity(), way);
+    } else if (kind < shakes_some) {
+      const Vector<3> middle = place();
+      shake(point, middle, random_.uniform(2, 5) * energy_.size_of(point) * mean_radius(), 0.9);
+    } else {
+      constexpr double two = 0.3, one_more = 0.1;
+      const int count = 1 + (random_.uniform() < two) + (random_.uniform() < one_more);
+      for (int k = 0; k < count; ++k) put_into_hole(point, some_sphere(point));
+    }
+  }
+
+  /// Those nearer than that, by so many of their radii at most.
+  void shake(Eigen::VectorXd& point, const Vector<3>& middle, double reach, double way) {
+    const double s = energy_.size_of(point);
+    for (std::size_t i = 0; i < energy_.size(); ++i) {
+      const Vector<3> at = energy_.center(point, i);
+      if ((at - middle).norm() < reach)
+        energy_.set_center(point, i, at + way * s * energy_.radius(i) * random_way());
+    }
+  }
+
+  void exchange(Eigen::VectorXd& point) {
+    const std::size_t i = random_() % energy_.size(), j = random_() % energy_.size();
+    const Vector<3> at = energy_.center(point, i);
+    energy_.set_center(point, i, energy_.center(point, j));
+    energy_.set_center(point, j, at);
+  }
+
+  /// Any, or one of the most or of the least squeezed.
+  std::size_t some_sphere(const Eigen::VectorXd& point) {
+    constexpr double by_squeeze = 0.6, least_squeezed = 0.3, spread = 0.08;
+    if (random_.uniform() >= by_squeeze) return random_() % energy_.size();
+    const std::vector<double> squeeze = energy_.squeeze(point);
+    const bool least = random_.uniform() < least_squeezed;
+    std::vector<std::size_t> order(squeeze.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return least ? squeeze[i] : -squeeze[i]; });
+    const double rank = -std::log(1 - random_.uniform()) * spread * static_cast<double>(order.size());
+    return order[std::min(order.size() - 1, static_cast<std::size_t>(rank))];
+  }
+
+  /// The roomiest of some random places.
+  void put_into_hole(Eigen::VectorXd& point, std::size_t i) {
+    const int probes = 3 + static_cast<int>(100 * random_.uniform());
+    const double s = energy_.size_of(point);
+    Vector<3> roomiest = energy_.center(point, i);
+    double most = -std::numeric_limits<double>::infinity();
+    for (int k = 0; k < probes; ++k) {
+      const Vector<3> at = place();
+      double room = energy_.container().clearance(at);
+      for (std::size_t j = 0; j < energy_.size() && room > most; ++j)
+        if (j != i) room = std::min(room, (at - energy_.center(point, j)).norm() - s * energy_.radius(j));
+      if (!(room > most)) continue;
+      most = room;
+      roomiest = at;
+    }
+    energy_.set_center(point, i, roomiest);
+  }
+
+  FewEnergy energy_;
+  const Places& places_;
+  const FewWish& wish_;
+  Random random_;
+  const bool of_one_size_;
+  QuasiNewton newton_;
+  std::uint64_t solved_ = 0;
+  double closely_ = 0;  // how tight the tightest seemed before it was closed
+  FewPacked found_;
+};
+
+}  // namespace
+
+bool are_few(std::size_t count, const Container& container) {
+  return count >= 2 && count <= most_few && !container.boundary().repeats();
+}
+
+/// By proportions that are rounded, so that sizes that are all multiplied by one factor go the same way.
+FewPacked pack_few(const std::vector<double>& radii, const Container& container, const Places& places,
+                   const FewWish& wish) {
+  const double largest = std::ranges::max(radii);
+  std::vector<double> proportions;
+  for (const double r : radii)
+    proportions.push_back(std::ldexp(std::round(std::ldexp(r / largest, bits)), -bits));
+  FewWish in_proportion = wish;
+  in_proportion.enough *= largest;
+  FewPacked packed = FewSearch(proportions, container, places, in_proportion).run();
+  packed.size /= largest;
+  return packed;
+}
+
+}  // namespace bernal

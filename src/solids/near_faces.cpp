@@ -1,0 +1,71 @@
+#include "solids/near_faces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ranges>
+
+namespace bernal {
+
+NearFaces::NearFaces(const Bounds<3>& box, const Vector<3>& p) {
+  // Of each axis: a face at its lower end, at its upper end, or none.
+  for (int which = 1; which < 27; ++which) {
+    double square = 0;
+    bool is_beside = true;  // whether the nearest point of the plane, line or corner lies on the box
+    for (int k = 0, rest = which; k < 3; ++k, rest /= 3) {
+      const double at = rest % 3 == 1 ? box.lower[k] : box.upper[k];
+      if (rest % 3 == 0) {
+        is_beside = is_beside && p[k] >= box.lower[k] && p[k] <= box.upper[k];
+      } else {
+        square += (p[k] - at) * (p[k] - at);
+      }
+    }
+    if (is_beside && std::isfinite(square)) distances_.push_back(std::sqrt(square));
+  }
+}
+
+double NearFaces::clear_radius(double radius, double gap) const {
+  const double lowest = std::max(gap, least_cap), nearest = std::max(gap, least_distance);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const double distance : distances_)
+      if (distance - radius < nearest * radius && radius - distance < lowest * radius) {
+        radius = std::nextafter(distance / (1 + nearest), 0.0);
+        changed = true;
+      }
+  }
+  return radius;
+}
+
+bool NearFaces::clear(double& radius, std::span<double> layers, double gap) const {
+  double share = 1;
+  const auto make_smaller = [&](double& r) {
+    const double smaller = clear_radius(share * r, gap);
+    share = smaller / r;
+    r = smaller;
+  };
+  make_smaller(radius);
+  for (double& layer : std::views::reverse(layers)) make_smaller(layer);
+  return share < 1;
+}
+
+void clear_of_ends(Solids& solids, double gap) {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  const Boundary<3> boundary = boundary_of<3>(solids.domain);
+  Bounds<3> ends{Vector<3>::Constant(-unlimited), Vector<3>::Constant(unlimited)};
+  for (int k = 0; k < 3; ++k)
+    if (boundary.repeats(k)) {
+      ends.lower[k] = boundary.origin[k];
+      ends.upper[k] = boundary.origin[k] + boundary.edges[k];
+    }
+  for (std::size_t i = 0; i < solids.spheres.size(); ++i) {
+    const double packed = solids.spheres.r[i];
+    solids.cleared += NearFaces(ends, Vector<3>(solids.spheres.center(i)))
+                          .clear(solids.spheres.r[i], solids.shells.of(i), gap);
+    solids.contacts.largest_change =
+        std::max(solids.contacts.largest_change, 1 - solids.spheres.r[i] / packed);
+  }
+  solids.contacts.volume_after = volume_of_balls(solids.spheres);
+}
+
+}  // namespace bernal
