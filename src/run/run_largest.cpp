@@ -15,9 +15,9 @@
 #include "bernal/core/text.hpp"
 #include "jam/few_spheres.hpp"
 #include "plan/made_plan.hpp"
+#include "plan/room_for_gaps.hpp"
 #include "run/begin_packing.hpp"
 #include "run/run_insides.hpp"
-#include "plan/room_for_gaps.hpp"
 #include "run/run_stages.hpp"
 #include "work/supply.hpp"
 
