@@ -15,6 +15,9 @@ namespace {
 
 using Face = TrueSurface::Face;
 
+/// How what the reader says of the same begins.
+constexpr std::string_view measured_note = "tessellated with a deflection";
+
 /// "40 % of the area in 6 faces of the kind plane".
 std::string shares_of_kinds(const TrueSurface& surface) {
   struct Share {
@@ -67,6 +70,8 @@ void attach(TrueSurface&& surface, std::string_view unit, ImportedMesh& imported
     return;
   }
   set_deviation_bounds(surface);
+  // What is measured says less.
+  std::erase_if(report.notes, [](const std::string& note) { return note.starts_with(measured_note); });
   const Face& worst = surface.worst_face();
   report.notes.push_back(fmt::format(
       "tessellated with a deflection of {:.3g}{}; proven: the surface of the file lies within {:.3g}{} of "

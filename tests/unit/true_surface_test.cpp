@@ -14,6 +14,7 @@
 #include "geometry/curved_patch.hpp"
 #include "geometry/deviation_bounds.hpp"
 #include "kernels/closest_point.hpp"
+#include "support/folder.hpp"
 
 namespace bernal {
 namespace true_surface_test {
@@ -282,6 +283,17 @@ TEST_F(InCadFile, WhatCannotBeProvenSaysWhy) {
       refused({.file = path("block_fillets_bore.step"), .fill_level = 10}),
       "true_surface: is of the file as it stands, but fill_level changes its walls: take one of the two out, "
       "and make the change in CAD");
+}
+
+TEST_F(InCadFile, AFaceWithoutASurfaceIsNamed) {
+  std::string brep = testing::text_of(path("frustum.brep"));
+  const std::string face = "\n0  1e-07 1 0\n";
+  const std::size_t at = brep.find(face);
+  ASSERT_NE(at, std::string::npos);
+  brep.replace(at, face.size(), "\n0  1e-07 0 0\n");
+  const testing::Folder folder;
+  EXPECT_EQ(cad::read_with_opencascade(folder.write("bare.brep", brep), 1).failure,
+            "face 1 has no surface; export the part again");
 }
 
 TEST_F(InCadFile, NothingOfItIsMadeUnlessAskedFor) {

@@ -5,6 +5,7 @@
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESModel.hxx>
@@ -16,6 +17,7 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
@@ -229,6 +231,16 @@ std::string list_of(const std::vector<std::string>& files) {
                      files.size() > most ? fmt::format(" and {} more", files.size() - most) : "");
 }
 
+/// Counted from 1; 0 if there is none.
+std::size_t face_without_surface(const TopoDS_Shape& shape) {
+  std::size_t number = 0;
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
+    ++number;
+    if (BRep_Tool::Surface(TopoDS::Face(face.Current())).IsNull()) return number;
+  }
+  return 0;
+}
+
 double diagonal_of(const TopoDS_Shape& shape) {
   Bnd_Box box;
   BRepBndLib::AddClose(shape, box);
@@ -280,15 +292,14 @@ void tessellate(const Parts& parts, double deflection, double diagonal, bool tru
   result.facts.deflection = deflection;
   result.facts.deviation = deviation;
   const std::string_view unit = result.facts.unit ? " mm" : "";
-  if (!true_surface)
-    result.facts.notes.push_back(
-        fmt::format("tessellated with a deflection of {:.3g}{}: the surface of the file lies up to {:.3g}{} "
-                    "outside and {:.3g}{} "
-                    "inside of the triangles, measured at 15 points of each{}",
-                    deflection, unit, deviation.outside, unit, deviation.inside, unit,
-                    std::max(deviation.outside, deviation.inside) > deflection * (1 + 1e-9)
-                        ? ", farther than the deflection"
-                        : ""));
+  result.facts.notes.push_back(
+      fmt::format("tessellated with a deflection of {:.3g}{}: the surface of the file lies up to {:.3g}{} "
+                  "outside and {:.3g}{} "
+                  "inside of the triangles, measured at 15 points of each{}",
+                  deflection, unit, deviation.outside, unit, deviation.inside, unit,
+                  std::max(deviation.outside, deviation.inside) > deflection * (1 + 1e-9)
+                      ? ", farther than the deflection"
+                      : ""));
   if (untriangulated > 0)
     result.facts.notes.push_back(
         fmt::format("{} faces could not be triangulated and are missing", untriangulated));
@@ -305,6 +316,10 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
                                                  : read_brep(file, parts);
   if (!result.ok()) return result;
 
+  if (const std::size_t number = face_without_surface(together(parts)); number > 0) {
+    result.failure = fmt::format("face {} has no surface; export the part again", number);
+    return result;
+  }
   const double diagonal = diagonal_of(together(parts));
   if (parts.solids.empty() && parts.faces.empty()) {
     result.failure =
