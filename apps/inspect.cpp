@@ -157,7 +157,8 @@ int inspect(const InspectCall& call) {
   if (!call.unit.empty()) unit_named(call.unit);  // refuses an unknown one before the file is read
   ProgressBar bar(call.json);
   bar.now("diagnose");
-  const MeshFile file{.file = call.mesh};
+  MeshFile file{.file = call.mesh};
+  file.true_surface = has_true_surface(call.mesh);
   const ImportedMesh imported = read_mesh(file);
   const MeshReport& report = imported.report;
   const std::vector<std::string> lines = lines_that_help(file, {}, imported, Effort::thorough);

@@ -185,7 +185,7 @@ int verify(const VerifyCall& call) {
   Certificate certificate = streamed    ? certify_in_slabs(scene, spheres_of_result(call.target), options)
                             : by_levels ? certify_levels(packing, options)
                                         : certify(spheres, domain, options);
-  certificate.statement += certified_walls(scene);
+  certificate.statement += certified_walls(scene, domain);
   const auto zones = zones_in_place(scene, domain, spheres, packing.classes, {.threads = call.threads});
   if (zones) add_to(certificate, *zones);
   if (const auto table = streamed ? std::nullopt : layers_table_of(call, packing))

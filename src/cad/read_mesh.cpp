@@ -19,7 +19,9 @@
 #include "cad/repair/interior.hpp"
 #include "cad/repair/obstacles.hpp"
 #include "cad/repair/repairs.hpp"
+#include "cad/true_surface.hpp"
 #include "geometry/changes.hpp"
+#include "geometry/deviation_bounds.hpp"
 #include "geometry/measures.hpp"
 #include "geometry/topology.hpp"
 
@@ -30,6 +32,8 @@ using cad::FileFacts;
 
 /// A true surface is tessellated to within this share of the smallest sphere's radius.
 constexpr double deflection_over_radius = 0.02;
+/// And where spheres are to lie inside of it: what is proven of its distance is somewhat more.
+constexpr double fine_deflection_over_radius = 8e-4;
 
 /// Ratio of the file's unit to the requested one.
 Ratio ratio_of(const MeshFile& options, const FileFacts& facts, std::optional<Unit> wanted) {
@@ -98,11 +102,9 @@ void keep_pieces(Mesh& mesh, const MeshFile& options) {
 }
 
 /// Rotates the upward axis to z, without mirroring, by the same convention as Collada.
-void turn_up(Mesh& mesh, Up up) {
-  move_vertices(mesh, [&](const Vector<3>& v) -> Vector<3> {
-    if (up == Up::x) return {-v[1], -v[2], v[0]};
-    return up == Up::y ? Vector<3>(v[0], -v[2], v[1]) : v;
-  });
+Vector<3> turned_up(const Vector<3>& v, Up up) {
+  if (up == Up::x) return {-v[1], -v[2], v[0]};
+  return up == Up::y ? Vector<3>(v[0], -v[2], v[1]) : v;
 }
 
 /// Closes seams, unless that improves nothing.
@@ -225,13 +227,21 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
                       fmt::format("applies to the surfaces of STEP, IGES and BREP, but {} holds triangles; "
                                   "take the key out",
                                   options.file.filename().string()));
-  const double deflection = options.deflection.value_or(deflection_over_radius * purpose.smallest_radius);
+  if (options.true_surface && !cad::opencascade_reads(options.file))
+    throw OptionError(
+        "true_surface",
+        fmt::format("is for STEP, IGES and BREP, but {} holds triangles, on which the certificate "
+                    "decides anyway; take the key out",
+                    options.file.filename().string()));
+  const double deflection = options.deflection.value_or(
+      (options.true_surface ? fine_deflection_over_radius : deflection_over_radius) *
+      purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
   const PolygonSurface* const given = options.surface_called(options.file);
   cad::ReadAttempt read =
       given ? cad::read_surface(*given, options.file)
             : cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
-                             assumed ? metres_per(*assumed) : 0);
+                             assumed ? metres_per(*assumed) : 0, options.true_surface);
   const Ratio ratio = ratio_of(options, read.facts, purpose.unit);
   const double factor = ratio.nearest();
 
@@ -249,7 +259,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   read.soup = {};
   Mesh& mesh = triangles.mesh;
   const double rounding = factor * cad::rounding_of_coordinates(mesh);
-  turn_up(mesh, options.up);
+  move_vertices(mesh, [&](const Vector<3>& v) { return turned_up(v, options.up); });
   const std::vector<Vector<3>> as_written = factor != 1 ? mesh.vertices : std::vector<Vector<3>>();
   if (factor != 1) move_vertices(mesh, [&](const Vector<3>& v) -> Vector<3> { return factor * v; });
   close_seams_of(triangles, options.weld.value_or(rounding), done);
@@ -282,6 +292,14 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   report.repairs.insert(report.repairs.begin(), done.begin(), done.end());
   result.report = std::move(report);
   result.mesh = std::move(mesh);
+  if (options.true_surface) {
+    move_linearly(read.surface,
+                  [&](const Vector<3>& v) -> Vector<3> { return factor * turned_up(v, options.up); });
+    const std::string unit = purpose.unit      ? fmt::format(" {}", name_of(*purpose.unit))
+                             : read.facts.unit ? " mm"
+                                               : "";
+    cad::attach(std::move(read.surface), unit, result);
+  }
   if (factor != 1 || !taken_out.empty()) cad::state_exactly(result.mesh, as_written, ratio, taken_out);
   return result;
 }
@@ -298,6 +316,8 @@ ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose) {
     throw Error(error.code(), error.what(), {options.file.string()});
   }
 }
+
+bool has_true_surface(const std::filesystem::path& file) { return cad::opencascade_reads(file); }
 
 Unit unit_of_mesh_file(const std::filesystem::path& file) {
   const MeshReport report = read_mesh(MeshFile{file}).report;
@@ -318,6 +338,7 @@ Unit unit_of_mesh_file(const std::filesystem::path& file) {
 
 ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose) {
   ImportedMesh result = read_mesh(options, purpose);
+  cad::require_true_surface(options, result);
   if (result.report.usable()) return result;
   std::vector<std::string> lines = lines_that_help(options, purpose, result, Effort::quick);
   for (std::string& line : lines)

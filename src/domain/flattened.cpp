@@ -60,6 +60,7 @@ struct Flatten {
 
   Flattened operator()(Mesh mesh) const {
     mesh.exact = nullptr;
+    mesh.surface = nullptr;
     return {std::move(mesh)};
   }
 

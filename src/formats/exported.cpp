@@ -45,6 +45,7 @@ struct MappedDomain {
   Domain operator()(Mesh mesh) const {
     for (Vector<3>& vertex : mesh.vertices) vertex = point(vertex);
     mesh.exact = nullptr;
+    mesh.surface = nullptr;
     return mesh;
   }
   Domain operator()(Revolved revolved) const {

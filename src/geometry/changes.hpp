@@ -5,11 +5,12 @@
 
 namespace bernal {
 
-/// Moves every vertex v to to(v); exact corners are dropped.
+/// Moves every vertex v to to(v); exact corners and the surface of the file are dropped.
 template <class To>
 void move_vertices(Mesh& mesh, const To& to) {
   for (Vector<3>& v : mesh.vertices) v = to(v);
   mesh.exact = nullptr;
+  mesh.surface = nullptr;
 }
 
 /// The surface of a box: corner k is upper along x, y, z if bits 0, 1, 2 of k are set.

@@ -96,7 +96,7 @@ JobPointer verify_job(const PackingPointer& of, std::optional<std::size_t> list,
                              .threads = threads,
                              .monitor = monitor});
     if (certificate.cancelled) throw Cancelled();
-    certificate.statement += certified_walls(scene);
+    certificate.statement += certified_walls(scene, of->domain);
     const auto zones = zones_in_place(scene, of->domain, of->spheres, of->classes, {.threads = threads});
     if (zones) add_to(certificate, *zones);
     if (const auto table = folder ? layers_table_of(*of, *folder) : std::nullopt) {

@@ -26,7 +26,7 @@ std::string as_off_file(const Mesh& mesh) {
   return text;
 }
 
-std::string certified_walls(const Scene& scene) {
+std::string certified_walls(const Scene& scene, const Domain& domain) {
   std::string text;
   for (const std::filesystem::path& changed : changed_files(scene))
     text += fmt::format(" {} has changed since it was packed into; the walls are those that it holds now.",
@@ -38,7 +38,15 @@ std::string certified_walls(const Scene& scene) {
   const auto* file = std::get_if<MeshFile>(&scene.container);
   if (!file) return text;
   if (!file->repair.empty()) text += " The walls are those of the repaired surface, not of the file's.";
-  if (file->deflection)
+  const auto* mesh = std::get_if<Mesh>(&domain);
+  if (mesh && mesh->surface) {
+    const double tolerance = mesh->surface->largest(&TrueSurface::Face::tolerance);
+    text += fmt::format(
+        " The walls are the surface of the CAD file itself, which is proven to lie within {:.2g} {} of its "
+        "triangles; "
+        "its edges are known to {:.2g} {}.",
+        mesh->surface->worst_face().apart, name_of(scene.unit), tolerance, name_of(scene.unit));
+  } else if (file->deflection)
     text += fmt::format(
         " The walls are triangles, tessellated from the CAD surface with a deflection of {:g} {}.",
         *file->deflection, name_of(scene.unit));

@@ -207,7 +207,7 @@ StagedPacking stage(const Packing& packing, StagedFolder& staged, const std::fil
   const bool has_vtp = is_whole && !as_array;
   const std::filesystem::path vtp = has_vtp ? staged.add("spheres.vtp") : std::filesystem::path();
   Certificate& certificate = made.certificate = certify_written(spheres, packing, options);
-  certificate.statement += certified_walls(packing.scene);
+  certificate.statement += certified_walls(packing.scene, packing.domain);
   go_on();
   Manifest& manifest = made.manifest;
   stage_insides(packing, staged, folder, options, made);

@@ -8,6 +8,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "geometry/archive_surface.hpp"
 #include "scene/given_files.hpp"
 #include "scene/run_archive.hpp"
 
@@ -35,6 +36,7 @@ static void archive_shared(Archive& a, std::shared_ptr<const T>& shared) {
 static void archive(Archive& a, Mesh& mesh) {
   a(mesh.vertices, mesh.triangles, mesh.inset);
   archive_shared(a, mesh.exact);
+  archive_shared(a, mesh.surface);
 }
 
 /// The domain of the kind that is the Kth.

@@ -185,7 +185,11 @@ std::string decided_text(const Certificate& c, const Domain& domain, const std::
     return fmt::format("{} in a {}, {} and {} decided exactly, no overlap{}, no protrusion",
                        counted_spheres(c.spheres), name_of(domain), pairs,
                        counted(c.walls_tested, "wall", "walls"), limit);
-  const bool mesh = std::holds_alternative<Mesh>(domain);
+  const auto* mesh = std::get_if<Mesh>(&domain);
+  if (mesh && mesh->surface)
+    return fmt::format(
+        "{}, {} decided exactly, {} of the CAD surface by proven bounds, no overlap{}, no protrusion",
+        counted_spheres(c.spheres), pairs, counted(c.walls_tested, "near piece", "near pieces"), limit);
   return fmt::format(
       "{}, {} and {} decided exactly, no overlap{}, no protrusion", counted_spheres(c.spheres), pairs,
       counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit);

@@ -14,6 +14,7 @@
 #include "verify/polygon_wall.hpp"
 #include "verify/predicates.hpp"
 #include "verify/revolved_wall.hpp"
+#include "verify/true_wall.hpp"
 
 namespace bernal::verify {
 namespace {
@@ -144,7 +145,8 @@ Walls<D> walls_of(const Domain& domain) {
     if (const auto* cylinder = std::get_if<Cylinder>(&domain)) return made<D>(CylinderWall(*cylinder));
     if (const auto* sphere = std::get_if<Sphere>(&domain)) return made<D>(SphereWall(*sphere));
     if (const auto* revolved = std::get_if<Revolved>(&domain)) return made<D>(RevolvedWall(*revolved));
-    return made<D>(MeshWall(std::get<Mesh>(domain)));
+    const Mesh& mesh = std::get<Mesh>(domain);
+    return mesh.surface ? made<D>(TrueWall(mesh)) : made<D>(MeshWall(mesh));
   }
   return [](const Ball<D>&, const CertifyOptions&, Tally&) { return WallState(); };
 }

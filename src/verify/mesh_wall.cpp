@@ -109,7 +109,15 @@ void check_closed(const Mesh& mesh) {
                     unpaired));
 }
 
-/// In double, to a few roundoffs of the triangle's size. The least of the three segments and, if p projects
+double distance_from_box(const Vector<3>& p, const Box<3>& box) {
+  double outside[3];
+  for (int k = 0; k < 3; ++k) outside[k] = std::max({box.lower[k] - p[k], 0.0, p[k] - box.upper[k]});
+  return std::hypot(outside[0], outside[1], outside[2]);
+}
+
+}  // namespace
+
+/// The least of the three segments and, if p projects
 /// inside, the plane: so a wrong guess of the region is harmless, even on needles.
 double distance_from_triangle(const Vector<3>& p, const Corners& v) {
   double best = Box<3>::infinity;
@@ -120,14 +128,6 @@ double distance_from_triangle(const Vector<3>& p, const Corners& v) {
   for (int k = 0; k < 3 && inside; ++k) inside = normal.cross(v[(k + 1) % 3] - v[k]).dot(p - v[k]) >= 0;
   return inside ? std::min(best, std::abs(normal.dot(p - v[0])) / length) : best;
 }
-
-double distance_from_box(const Vector<3>& p, const Box<3>& box) {
-  double outside[3];
-  for (int k = 0; k < 3; ++k) outside[k] = std::max({box.lower[k] - p[k], 0.0, p[k] - box.upper[k]});
-  return std::hypot(outside[0], outside[1], outside[2]);
-}
-
-}  // namespace
 
 MeshWall::MeshWall(const Mesh& mesh) : mesh_(mesh), facets_(facets_of(mesh)) {}
 
@@ -216,6 +216,15 @@ bool MeshWall::center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& 
 double MeshWall::distance_from(const Vector<3>& p) const {
   return facets_.nearest([&](const Box<3>& box) { return distance_from_box(p, box); },
                          [&](const Facet& facet) { return distance_from_triangle(p, corners(facet)); });
+}
+
+bool MeshWall::is_farther_than(const Vector<3>& p, double distance) const {
+  const double more = (1 + 1e-9) * distance;
+  double least = Box<3>::infinity;
+  facets_.for_each_touching(box_of_ball<3>(p, more), [&](const Facet& facet) {
+    least = std::min(least, distance_from_triangle(p, corners(facet)));
+  });
+  return least > more;
 }
 
 }  // namespace bernal::verify

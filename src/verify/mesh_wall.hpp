@@ -8,6 +8,9 @@
 
 namespace bernal::verify {
 
+/// In double, to a few roundoffs of the triangle's size.
+double distance_from_triangle(const Vector<3>& p, const Corners& corners);
+
 /// The triangles of a mesh as a wall.
 ///
 /// Inside is where the winding number is 1. That is well defined because the surface has no boundary: for any
@@ -25,6 +28,13 @@ class MeshWall {
   /// Tests the ball against the near triangles and decides the side of its centre; counts both.
   WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const;
 
+  /// Whether the mesh winds around the centre once. Exact.
+  bool center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
+  /// In double, to a few roundoffs.
+  double distance_from(const Vector<3>& p) const;
+  /// Whether all triangles are, in double and by a billionth more.
+  bool is_farther_than(const Vector<3>& p, double distance) const;
+
  private:
   struct Facet {
     Box<3> extent;
@@ -39,8 +49,6 @@ class MeshWall {
   static std::vector<Facet> facets_of(const Mesh& mesh);
   Truth clears(const Ball<3>& ball, const Reach& reach, const Facet& facet, Arithmetic arithmetic,
                Tally& tally) const;
-  bool center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
-  double distance_from(const Vector<3>& p) const;
 
   const Mesh& mesh_;
   BoxTree<Facet, 3> facets_;

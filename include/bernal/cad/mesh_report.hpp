@@ -17,12 +17,13 @@ struct Defect {
 /// What the importer found in a CAD file. Lengths are in the requested unit, or in the file's own if none was
 /// requested.
 struct MeshReport {
-  std::string reader;        ///< the reader whose coordinates were used, and why, one phrase
-  std::string unit;          ///< of the file's coordinates, as the file states it; "" if it does not
-  double metres = 0;         ///< one unit of the coordinates in metres; 0 if the file does not say
-  double stated_metres = 0;  ///< `unit` in metres: readers convert STEP and IGES to millimetres
-  double deflection = 0;     ///< linear deflection of the tessellation; 0 if the file holds no true surfaces
-  char up = 0;               ///< the file's upward axis: 'x', 'y' or 'z'; 0 if it does not say
+  std::string reader;           ///< the reader whose coordinates were used, and why, one phrase
+  std::string unit;             ///< of the file's coordinates, as the file states it; "" if it does not
+  double metres = 0;            ///< one unit of the coordinates in metres; 0 if the file does not say
+  double stated_metres = 0;     ///< `unit` in metres: readers convert STEP and IGES to millimetres
+  std::string without_surface;  ///< why the mesh has no `surface`, though it was asked for; "" else
+  double deflection = 0;  ///< linear deflection of the tessellation; 0 if the file holds no true surfaces
+  char up = 0;            ///< the file's upward axis: 'x', 'y' or 'z'; 0 if it does not say
   std::vector<std::string> solids;  ///< names of the file's parts
   std::vector<std::string> notes;   ///< what else the file says, or how it was read, one phrase each
   std::uint64_t faces = 0;          ///< triangles after triangulation and welding

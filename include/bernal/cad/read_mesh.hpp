@@ -21,8 +21,8 @@ struct ImportedMesh {
 /// What an import depends on besides its options.
 struct ImportFor {
   std::optional<Unit> unit = {};  ///< of the returned coordinates; the file's own if absent
-  /// Smallest sphere radius, in that unit; true surfaces are tessellated to within a fiftieth of it. 0:
-  /// unknown.
+  /// Smallest sphere radius, in that unit; surfaces of CAD files are tessellated to within a fiftieth of it,
+  /// or, where spheres are to lie inside of them, within less than a thousandth. 0: unknown.
   double smallest_radius = 0;
   /// Limit of processor time for each requested repair; a repair that takes longer is abandoned.
   double repair_seconds = 600;
@@ -39,6 +39,8 @@ class OptionError : public Error {
 /// Whether the file name's extension, in either case, is that of a format that can be read: STL, OBJ, PLY,
 /// OFF, 3MF, AMF, glTF, Collada, FBX, STEP, IGES, BREP.
 bool is_mesh_file_name(const std::filesystem::path& file);
+/// Whether it holds surfaces by their formulas, not triangles: STEP, IGES, BREP.
+bool has_true_surface(const std::filesystem::path& file);
 /// {".stl", ".obj", …}
 std::span<const std::string_view> mesh_file_endings();
 

@@ -117,6 +117,12 @@ inline bool is_faceted(const Domain& domain) {
   return std::holds_alternative<Mesh>(domain) || std::holds_alternative<Polygon>(domain) ||
          std::holds_alternative<Revolved>(domain);
 }
+/// How far spheres are kept off its walls beside their gaps: of a mesh with the surface of a CAD file as far
+/// as the two may be apart.
+inline double margin_of(const Domain& domain) {
+  const auto* mesh = std::get_if<Mesh>(&domain);
+  return mesh ? mesh->margin() : 0;
+}
 /// How many independent motions, shifts and turns, take the domain into itself for as far as they go: a shift
 /// along each axis that repeats itself, a turn about the axis of a cylinder or of a profile, three about a
 /// sphere's centre. A mesh or a polygon has none.

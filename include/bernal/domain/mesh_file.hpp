@@ -44,6 +44,7 @@ struct MeshFile {
   std::vector<std::filesystem::path> obstacles = {};  ///< closed surfaces that are taken out
   std::optional<double> weld = {};                    ///< corners of open edges up to this far apart are one
   std::optional<double> deflection = {};              ///< of a tessellated surface from the true one
+  bool true_surface = false;  ///< spheres lie inside the surface of the CAD file itself, not of its triangles
   std::vector<Repair> repair = {};
   std::optional<double> largest_hole = {};  ///< that is closed; else half of the part's diagonal
   std::vector<std::string> cap = {};        ///< planes, "z = 1.1" or "x < 0.5": what they cut off is outside

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bernal/core/vector.hpp"
+#include "bernal/geometry/true_surface.hpp"
 
 namespace bernal {
 
@@ -36,6 +37,12 @@ struct Mesh {
   /// certificate decides on these, and other code keeps off the vertices by more than that. Null once
   /// vertices are moved.
   std::shared_ptr<const ExactCorners> exact = {};
+  /// The surface of a CAD file that the triangles stand for, which the certificate then decides on; its flat
+  /// triangles are those of the mesh. Null once vertices are moved, and where nobody asks for it.
+  std::shared_ptr<const TrueSurface> surface = {};
+
+  /// How far the surface of the CAD file may be from the triangles, which packing keeps off them.
+  double margin() const { return surface ? surface->largest(&TrueSurface::Face::apart) : 0; }
 };
 
 }  // namespace bernal

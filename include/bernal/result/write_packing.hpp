@@ -60,6 +60,6 @@ void check_writable(const std::filesystem::path& folder, const Scene& scene,
 
 /// What a certificate's statement adds about the walls, where they are not simply the file's surface: " The
 /// walls are …", or nothing.
-std::string certified_walls(const Scene& scene);
+std::string certified_walls(const Scene& scene, const Domain& domain);
 
 }  // namespace bernal

@@ -34,6 +34,7 @@ namespace {
 
 constexpr double default_deflection = 1e-3;   // of the diagonal
 constexpr double smallest_deflection = 1e-5;  // of the diagonal; the mesher takes minutes at this
+constexpr double fine_edges = 1e-8;           // of the diagonal: what is left between edges and their chords
 
 struct NamedShape {
   TopoDS_Shape shape;
@@ -261,12 +262,15 @@ void heal(Parts& parts) {
         fmt::format("{} of {} solids were healed by OpenCASCADE", healed, parts.solids.size()));
 }
 
-void tessellate(const Parts& parts, double deflection, ReadAttempt& result) {
+void tessellate(const Parts& parts, double deflection, double diagonal, bool true_surface,
+                ReadAttempt& result) {
   std::size_t untriangulated = 0, without_area = 0;
   SurfaceDeviation deviation;
   for (const NamedShape& solid : parts.solids) {
     const std::size_t first = result.soup.polygons.size();
-    const Tessellated made = append_tessellation(solid.shape, deflection, result.soup);
+    const Tessellated made =
+        append_tessellation(solid.shape, deflection, result.soup, true_surface ? &result.surface : nullptr,
+                            fine_edges * diagonal);
     if (result.soup.polygons.size() > first) result.soup.solids.push_back({solid.name, first});
     deviation.outside = std::max(deviation.outside, made.deviation.outside);
     deviation.inside = std::max(deviation.inside, made.deviation.inside);
@@ -276,14 +280,15 @@ void tessellate(const Parts& parts, double deflection, ReadAttempt& result) {
   result.facts.deflection = deflection;
   result.facts.deviation = deviation;
   const std::string_view unit = result.facts.unit ? " mm" : "";
-  result.facts.notes.push_back(
-      fmt::format("tessellated with a deflection of {:.3g}{}: the surface of the file lies up to {:.3g}{} "
-                  "outside and {:.3g}{} "
-                  "inside of the triangles, measured at 15 points of each{}",
-                  deflection, unit, deviation.outside, unit, deviation.inside, unit,
-                  std::max(deviation.outside, deviation.inside) > deflection * (1 + 1e-9)
-                      ? ", farther than the deflection"
-                      : ""));
+  if (!true_surface)
+    result.facts.notes.push_back(
+        fmt::format("tessellated with a deflection of {:.3g}{}: the surface of the file lies up to {:.3g}{} "
+                    "outside and {:.3g}{} "
+                    "inside of the triangles, measured at 15 points of each{}",
+                    deflection, unit, deviation.outside, unit, deviation.inside, unit,
+                    std::max(deviation.outside, deviation.inside) > deflection * (1 + 1e-9)
+                        ? ", farther than the deflection"
+                        : ""));
   if (untriangulated > 0)
     result.facts.notes.push_back(
         fmt::format("{} faces could not be triangulated and are missing", untriangulated));
@@ -291,7 +296,8 @@ void tessellate(const Parts& parts, double deflection, ReadAttempt& result) {
     result.facts.notes.push_back(fmt::format("{} faces without area were dropped", without_area));
 }
 
-ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double deflection) {
+ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double deflection,
+                 bool true_surface) {
   ReadAttempt result;
   Parts parts;
   result.failure = format == ShapeFormat::step   ? read_step(file, parts)
@@ -319,6 +325,7 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
     return result;
   }
   if (!(deflection > 0)) deflection = default_deflection * diagonal;
+  if (true_surface) deflection = std::max(deflection, smallest_deflection * diagonal);
   if (deflection < smallest_deflection * diagonal) {
     const std::string_view unit = parts.facts.unit ? " mm" : "";
     result.failure = fmt::format(
@@ -330,7 +337,7 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
   sew_faces(parts, diagonal);
   heal(parts);
   result.facts = std::move(parts.facts);
-  tessellate(parts, deflection, result);
+  tessellate(parts, deflection, diagonal, true_surface, result);
   if (!std::all_of(result.soup.points.begin(), result.soup.points.end(),
                    [](const Vector<3>& p) { return p.allFinite(); }))
     result.failure = "a coordinate is not finite";
@@ -341,9 +348,9 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
 }  // namespace bernal::cad
 
 void bernal_read_shapes(const std::filesystem::path& file, bernal::cad::ShapeFormat format, double deflection,
-                        bernal::cad::ReadAttempt& result) {
+                        bool true_surface, bernal::cad::ReadAttempt& result) {
   try {
-    result = bernal::cad::read(file, format, deflection);
+    result = bernal::cad::read(file, format, deflection, true_surface);
   } catch (const Standard_Failure& failure) {
     const std::string_view phrases = failure.GetMessageString();
     result.failure = fmt::format("OpenCASCADE gives up: {}", phrases.empty() ? "no reason given" : phrases);

@@ -17,6 +17,7 @@
 #include <array>
 
 #include "cad/opencascade/face_triangles.hpp"
+#include "cad/opencascade/make_true_surface.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -109,6 +110,14 @@ double signed_volume(const PolygonSoup& soup) {
 struct Attempt {
   PolygonSoup soup;
   Tessellated made;
+  TrueSurface surface = {};
+};
+
+/// What is wanted of a tessellation.
+struct Wanted {
+  double deflection;
+  bool with_surface;
+  double fine;
 };
 
 std::vector<FacePatch> patches_of(const TopoDS_Shape& shape, std::size_t& untriangulated) {
@@ -146,7 +155,8 @@ FaceTriangles triangles_of(const FacePatch& patch, const std::vector<Vector<3>>&
   return face;
 }
 
-Attempt tessellate(const TopoDS_Shape& shape, double deflection) {
+Attempt tessellate(const TopoDS_Shape& shape, const Wanted& wanted) {
+  const double deflection = wanted.deflection;
   IMeshTools_Parameters parameters;
   parameters.Deflection = deflection;
   parameters.Angle = angular_deflection;
@@ -154,7 +164,7 @@ Attempt tessellate(const TopoDS_Shape& shape, double deflection) {
   const BRepMesh_IncrementalMesh done(shape, parameters);
 
   Attempt result;
-  auto& [soup, made] = result;
+  auto& [soup, made, true_surface] = result;
   const std::vector<FacePatch> patches = patches_of(shape, made.untriangulated);
   std::vector<Vector<3>> place;
   for (const FacePatch& patch : patches)
@@ -172,6 +182,8 @@ Attempt tessellate(const TopoDS_Shape& shape, double deflection) {
     const BRepAdaptor_Surface surface(patch.face, false);
     const std::size_t before = soup.polygons.size();
     const FaceTriangles face = triangles_of(patch, place, stitcher, surface, deflection);
+    if (wanted.with_surface)
+      append_face(patch.face, patch.triangulation, patch.location, face, wanted.fine, true_surface);
     const auto shared = static_cast<std::uint32_t>(patch.triangulation->NbNodes());
     std::vector<std::uint32_t> own(face.places.size() - shared,
                                    unnumbered);  // for the nodes that refining added
@@ -203,14 +215,31 @@ double worst(const Attempt& attempt) {
   return std::max(attempt.made.deviation.outside, attempt.made.deviation.inside);
 }
 
+void append(TrueSurface& surface, TrueSurface&& more) {
+  const auto patches = static_cast<std::uint32_t>(surface.patches.size()),
+             flats = static_cast<std::uint32_t>(surface.flats.size()),
+             faces = static_cast<std::uint32_t>(surface.faces.size());
+  for (TrueSurface::Piece& piece : more.pieces) piece.patch += patches, piece.flat += flats;
+  for (TrueSurface::Flat& flat : more.flats) flat.face += faces;
+  for (TrueSurface::Face& face : more.faces) face.number += faces;
+  const auto move_all = [](auto& to, auto& from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  move_all(surface.patches, more.patches);
+  move_all(surface.pieces, more.pieces);
+  move_all(surface.flats, more.flats);
+  move_all(surface.faces, more.faces);
+}
+
 }  // namespace
 
-Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, PolygonSoup& soup) {
-  Attempt best = tessellate(shape, deflection);
+Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, PolygonSoup& soup,
+                                TrueSurface* surface, double fine) {
+  Attempt best = tessellate(shape, {deflection, surface != nullptr, fine});
   double finer = deflection;
   for (int k = 0; k < attempts && worst(best) > deflection; ++k) {
     finer *= std::clamp(0.9 * deflection / worst(best), 0.3, 0.9);
-    Attempt next = tessellate(shape, finer);
+    Attempt next = tessellate(shape, {finer, surface != nullptr, fine});
     const bool better = worst(next) < 0.9 * worst(best);
     if (worst(next) < worst(best)) best = std::move(next);
     if (!better) break;
@@ -221,6 +250,7 @@ Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, Po
     for (std::uint32_t& corner : polygon) corner += first;
     soup.polygons.push_back(std::move(polygon));
   }
+  if (surface) append(*surface, std::move(best.surface));
   return best.made;
 }
 

@@ -16,6 +16,10 @@ struct Tessellated {
 /// deviation states what was reached; edges known only to a larger tolerance limit it. Faces share the points
 /// of their common edges by index, independent of rounding in their placements: a closed shape gives closed
 /// triangles. Triangles have the orientation of their faces.
-Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, PolygonSoup& soup);
+///
+/// Where `surface` is given, the faces are appended to it with their formulas; `fine`: what may remain
+/// between their edges and chords.
+Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, PolygonSoup& soup,
+                                TrueSurface* surface = nullptr, double fine = 0);
 
 }  // namespace bernal::cad

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bernal/core/vector.hpp"
+#include "bernal/geometry/true_surface.hpp"
 
 namespace bernal::cad {
 
@@ -51,7 +52,8 @@ struct ReadAttempt {
   PolygonSoup soup = {};
   std::string failure = {};  ///< one line; empty if the soup is good
   FileFacts facts = {};
-  std::string reader = {};  ///< name of the reader and its precision, one phrase
+  TrueSurface surface = {};  ///< with the triangles of the soup as `flats`, where it was asked for
+  std::string reader = {};   ///< name of the reader and its precision, one phrase
 
   bool ok() const { return failure.empty(); }
 };
@@ -93,7 +95,9 @@ bool opencascade_reads(const std::filesystem::path& file);
 /// The surfaces of STEP, IGES and BREP as triangles at most `deflection` away from them; a thousandth of the
 /// part's diagonal if that is not positive. STEP and IGES are converted to millimetres, and `deflection` is
 /// in these (a BREP has no unit). Solids are placed by the assembly; surfaces outside solids are sewn. In a
-/// child process.
-ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection);
+/// child process. With `true_surface` the formulas of the faces come with them, and a deflection that is too
+/// fine for the mesher is made larger.
+ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection,
+                                  bool true_surface = false);
 
 }  // namespace bernal::cad

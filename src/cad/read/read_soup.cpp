@@ -66,7 +66,8 @@ void make_plain(ReadAttempt& read) {
   refuse(file, fmt::format("cannot be read: {}{}", why, has_remedy ? "" : "; export it again, or as STL"));
 }
 
-ReadAttempt read_by_extension(const std::filesystem::path& file, double deflection, double metres) {
+ReadAttempt read_by_extension(const std::filesystem::path& file, double deflection, double metres,
+                              bool true_surface) {
   const std::string extension = extension_of(file);
   if (extension == ".stl") return read_stl(file);
   if (extension == ".obj") return read_obj(file);
@@ -76,7 +77,7 @@ ReadAttempt read_by_extension(const std::filesystem::path& file, double deflecti
   if (!opencascade_reads(file)) return read_with_assimp(file);
   constexpr double millimetre = 1e-3;
   const bool has_unit = !extension.starts_with(".br");
-  return read_with_opencascade(file, deflection / (has_unit ? millimetre : metres));
+  return read_with_opencascade(file, deflection / (has_unit ? millimetre : metres), true_surface);
 }
 
 /// What was read, once it is known to be a surface.
@@ -111,7 +112,8 @@ void note_other_files(const std::filesystem::path& file, ReadAttempt& read) {
 
 }  // namespace
 
-ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres) {
+ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres,
+                      bool true_surface) {
   const FileKind kind = kind_of_file(file);
   if (kind == FileKind::missing) refuse(file, "no such file");
   if (kind == FileKind::folder) refuse(file, "is a folder, not a file");
@@ -119,7 +121,7 @@ ReadAttempt read_soup(const std::filesystem::path& file, double deflection, doub
   std::error_code error;
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
   if (const std::string other = why_no_mesh(file); !other.empty()) refuse(file, other);
-  ReadAttempt read = sound(read_by_extension(file, deflection, metres > 0 ? metres : 1), file);
+  ReadAttempt read = sound(read_by_extension(file, deflection, metres > 0 ? metres : 1, true_surface), file);
   note_other_files(file, read);
   return read;
 }

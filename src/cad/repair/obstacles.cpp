@@ -29,6 +29,7 @@ void take_out(Mesh& container, const Mesh& obstacle, const std::string& name) {
   };
   Mesh both = container, turned = obstacle;
   both.exact = nullptr;
+  both.surface = nullptr;
   turn_inside_out(turned);
   append(both, turned);
   if (!intersects_itself(both)) {
