@@ -71,7 +71,7 @@ bool is_guess(const Plan& plan) {
 bool is_tried(const Plan& plan) {
   const Scene& scene = plan.scene;
   const double most = (1 + error_between_walls(plan.domain, *plan.radii)) * plan.expected_count;
-  return is_guess(plan) && !scene.is_periodic() && scene.stages.back().as<Relax>() &&
+  return is_guess(plan) && !is_periodic(plan.domain) && scene.stages.back().as<Relax>() &&
          most < static_cast<double>(most_few);
 }
 

@@ -59,7 +59,7 @@ StageEnd run_in_box(const Stage& stage, const std::optional<BedKeepsake>& bed, S
 bool packs_few(const Scene& scene) {
   const Stage& last = scene.stages.back();
   const StageTraits& traits = table_of(last).traits;
-  if (scene.is_periodic() || !traits.stands_in_bed(scene)) return false;
+  if (scene.is_periodic() || scene.target.bed.is_asked() || !traits.stands_in_bed(scene)) return false;
   return scene.dimension() == 2 ? traits.reaches == Reaches::settled : last.as<Relax>() != nullptr;
 }
 

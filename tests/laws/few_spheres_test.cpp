@@ -107,6 +107,14 @@ TEST(FewSpheres, AreAsLargeAsIsKnown) {
   }
 }
 
+TEST(FewSpheres, OfABedRestAndAreNotSearchedFor) {
+  const std::string silo = "kind = \"box\"\nsize = [4, 4]\n", bed = "bed = \"poured\"\n";
+  const Packing packing = packed(scene_in(silo, bed + sized(0.49, "16")));
+  EXPECT_LT(packing.spheres.size(), 16U);
+  EXPECT_NE(packing.outcome, Outcome::converged) << packing.reason;
+  EXPECT_EQ(packed(scene_in(silo, sized(0.49, "16"))).spheres.size(), 16U);
+}
+
 TEST(FewSpheres, OfACountStandWithNextToNoPlay) {
   for (const Known& known : all_known())
     for (const double play : {1e-9, 1e-7, 1e-4}) {
