@@ -43,7 +43,7 @@ std::set<std::string> names_in(const fs::path& folder) {
 Certificate certificate_of(const fs::path& folder) {
   const Packing packing = read_packing(folder);
   Certificate certificate = certify(packing.spheres, packing.domain);
-  certificate.statement += certified_walls(packing.scene);
+  certificate.statement += certified_walls(packing.scene, packing.domain);
   return certificate;
 }
 
