@@ -65,9 +65,13 @@ class FewInBed {
 
   /// In place of all that is in the bed, if they fit by the gap, which may be less than the bed's skin.
   bool stand(const Spheres<3>& spheres) {
+    const Container& container = in_bed_.bed().container();
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       const Vector<3> place = spheres.center(i);
-      if (!in_bed_.bed().container().contains(place, spheres.r[i] + gap_)) return false;
+      std::optional<EffectTimer> exact_timer;
+      if (container.arithmetic() == WallArithmetic::exact)
+        exact_timer.emplace(report_.effects[exact_walls_effect]);
+      if (!container.contains(place, spheres.r[i] + gap_)) return false;
       for (std::size_t j = 0; j < i; ++j)
         if (!((place - spheres.center(j)).norm() >= spheres.r[i] + spheres.r[j] + gap_)) return false;
     }
