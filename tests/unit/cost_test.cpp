@@ -362,7 +362,7 @@ TEST(Cost, StatesWhatPackStates) {
 // Where a scene ends at a limit, that is what stands between it and what it asks for.
 TEST(Cost, PutsOffALimitThatTheSceneEndsAt) {
   const testing::Folder folder;
-  const Scene scene = equal_spheres(Box{.size = Vector<3>(10.4, 10.4, 10.4)}, 134, Relax{.sweeps = 10});
+  const Scene scene = equal_spheres(Box{.size = Vector<3>(12, 12, 12)}, 218, Relax{.sweeps = 10});
   const CostReport report =
       measure_cost(scene, folder.path(), {.seconds = 20, .seeds = 1, .threads = 1, .most_settings = 4});
   ASSERT_EQ(report.rows[report.own].outcome, Outcome::hit_limit) << report.rows[report.own].reason;
