@@ -83,7 +83,7 @@ class FewInBed {
     return effort_of_one_more * std::min(1.0, with_full_effort / static_cast<double>(count));
   }
 
-  /// Of the volume: no arrangement fills more, and in a container none comes near it.
+  /// Of the volume: equal spheres fill no more. Mixtures that would are not searched for.
   static double densest_known(int dimension) { return dimension == 2 ? 0.9069 : 0.7405; }
 
   SpheresInBed& in_bed_;

@@ -9,9 +9,7 @@ namespace bernal {
 // >= Ri + Rj >= ri + rj + gap, all sums rounded up. No stage and no engine knows of gaps: `build` plans that
 // packing, `run` carries it out, and from there on all lengths are those of the scene again. This is the only
 // place that leads from one to the other; where the scene asks for no gap there is nothing to lead.
-
-// The same is done where walls are the surface of a CAD file: as far as that may come inside of its
-// triangles, those are moved.
+// Where walls are the surface of a CAD file, its triangles are moved in the same way, by the margin.
 
 /// Whether there is anything to lead.
 inline bool needs_room(const Plan& plan) { return plan.scene.asks_for_gaps() || margin_of(plan.domain) > 0; }
