@@ -237,11 +237,13 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
       (options.true_surface ? fine_deflection_over_radius : deflection_over_radius) *
       purpose.smallest_radius);
   const std::optional<Unit> assumed = options.unit ? options.unit : purpose.unit;
+  const double metres = purpose.unit ? metres_per(*purpose.unit) : 0;
+  std::optional<cad::SpheresInside> inside;
+  if (options.true_surface) inside = {purpose.smallest_radius * metres};
   const PolygonSurface* const given = options.surface_called(options.file);
   cad::ReadAttempt read =
       given ? cad::read_surface(*given, options.file)
-            : cad::read_soup(options.file, purpose.unit ? deflection * metres_per(*purpose.unit) : 0,
-                             assumed ? metres_per(*assumed) : 0, options.true_surface);
+            : cad::read_soup(options.file, deflection * metres, assumed ? metres_per(*assumed) : 0, inside);
   const Ratio ratio = ratio_of(options, read.facts, purpose.unit);
   const double factor = ratio.nearest();
 

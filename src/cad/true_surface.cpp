@@ -1,7 +1,6 @@
 #include "cad/true_surface.hpp"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 
 #include "cad/diagnose/counted.hpp"
 #include "geometry/deviation_bounds.hpp"
+#include "geometry/surface_kinds.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -18,27 +18,11 @@ using Face = TrueSurface::Face;
 /// How what the reader says of the same begins.
 constexpr std::string_view measured_note = "tessellated with a deflection";
 
-/// "40 % of the area in 6 faces of the kind plane".
+/// "6 × plane (40 % of the area), …".
 std::string shares_of_kinds(const TrueSurface& surface) {
-  struct Share {
-    std::size_t faces = 0;
-    double area = 0;
-  };
-  std::map<std::string, Share> of;
-  double all = 0;
-  for (const Face& face : surface.faces) ++of[face.kind].faces;
-  for (const TrueSurface::Flat& flat : surface.flats) {
-    const auto& [a, b, c] = flat.corners;
-    const double area = 0.5 * (b - a).cross(c - a).norm();
-    of[surface.faces[flat.face].kind].area += area;
-    all += area;
-  }
-  std::vector<std::pair<std::string, Share>> sorted(of.begin(), of.end());
-  std::ranges::stable_sort(sorted,
-                           [](const auto& a, const auto& b) { return a.second.area > b.second.area; });
   std::vector<std::string> words;
-  for (const auto& [kind, share] : sorted)
-    words.push_back(fmt::format("{} × {} ({:.3g} % of the area)", share.faces, kind, 100 * share.area / all));
+  for (const SurfaceKind& kind : kinds_of(surface))
+    words.push_back(fmt::format("{} × {} ({:.3g} % of the area)", kind.faces, kind.name, 100 * kind.share));
   return fmt::format("{}", fmt::join(words, ", "));
 }
 

@@ -54,7 +54,7 @@ class KnobAlone {
     if (seen_.size() < 2)
       return fmt::format("{}: no other value was measured with every seed{}.", name(),
                          failed_.empty() ? ", for want of time" : failed_);
-    std::string text = changes_nothing() ? without_effect() : both_ways();
+    std::string text = knob_.tells_all ? each() : changes_nothing() ? without_effect() : both_ways();
     return fmt::format("{}: {}{}.", name(), text, failed_);
   }
 
@@ -66,6 +66,15 @@ class KnobAlone {
 
   std::string name() const {
     return knob_.note.empty() ? knob_.name : fmt::format("{} ({})", knob_.name, knob_.note);
+  }
+  /// "false: 200 spheres, packing fraction 0.1234, 0.3 s to prepare and 1 s to pack; true: …"
+  std::string each() const {
+    std::string text;
+    for (const Seen& s : seen_)
+      text += fmt::format("{}{}: {:.0f} spheres, packing fraction {:.4f}, {} to prepare and {} to pack",
+                          text.empty() ? "" : "; ", s.text, s.row->spheres, s.row->phi,
+                          seconds_in_words(s.row->prepare_seconds), seconds_in_words(s.row->seconds));
+    return text;
   }
   bool changes_nothing() const {
     return std::ranges::all_of(seen_,

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
@@ -22,6 +23,8 @@ namespace {
 /// Packing fractions that are asked for where the scene asks for none, over what is attainable. Few of them
 /// lie below it: they say little more than what was asked for.
 constexpr std::array target_shares = {0.85, 0.95, 1.0025, 1.005, 1.0075, 1.01, 1.0125, 1.015, 1.0175, 1.02};
+/// The rarest size that counts where triangles follow the sizes.
+constexpr double rare = 1e-2;
 constexpr std::array face_counts = {12, 30, 100, 300, 1000};
 
 std::optional<double> number_of(const schema::Value& value) {
@@ -134,6 +137,41 @@ std::optional<Knob> face_knob(const Subject& subject, const std::filesystem::pat
   return knob;
 }
 
+/// Triangles of a CAD file, then the surface itself with coarser and finer triangles under it.
+std::optional<Knob> surface_knob(const Subject& subject) {
+  const double smallest_radius = subject.smallest_radius;
+  const auto* own = std::get_if<MeshFile>(&subject.scene.container);
+  if (!own || !has_true_surface(own->file) || !(smallest_radius > 0)) return {};
+  constexpr double of_triangles = 0.02;  // deflection over radius where a scene says none
+  Knob knob{.name = "true_surface", .tells_all = true};
+  const auto add = [&](Step step) {
+    knob.order.push_back(knob.steps.size());
+    knob.steps.push_back(std::move(step));
+  };
+  const auto turn_to = [](bool on, std::optional<double> deflection) {
+    return [on, deflection](Setting& setting) {
+      auto& mesh = std::get<MeshFile>(setting.scene.container);
+      mesh.true_surface = on;
+      mesh.deflection = deflection;
+    };
+  };
+  const auto as_it_is = [](Setting&) {};
+  if (own->true_surface)
+    add({.text = "false",
+         .turn = turn_to(false, of_triangles * smallest_radius),
+         .wall_deviation = of_triangles * smallest_radius});
+  else
+    add({.text = "false", .turn = as_it_is, .wall_deviation = own->deflection.value_or(0)});
+  for (const double share : {of_triangles, 4e-3, 8e-4})
+    add({.text = fmt::format("true with a deflection of {:.3g}", share * smallest_radius),
+         .turn = turn_to(true, share * smallest_radius)});
+  if (own->true_surface) {
+    knob.own = knob.steps.size();
+    add({.text = "true", .turn = as_it_is});
+  }
+  return knob;
+}
+
 /// Whether the scene with its first other value is one; by its text alone where `lightly`.
 bool can_be_turned(const Knob& knob, const Subject& subject, bool lightly) {
   try {
@@ -198,6 +236,7 @@ Subject subject_of(const Scene& scene) {
                   .domain = std::make_shared<const Domain>(plan.domain),
                   .attainable_packing_fraction = plan.attainable_packing_fraction,
                   .mean_radius = plan.radii->moment(1),
+                  .smallest_radius = plan.radii->quantile(rare),
                   .places_expected = plan.places_expected,
                   .box_follows = plan.box_follows};
   subject.is_predicted = subject.scene.target.predicted;
@@ -237,8 +276,10 @@ std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& 
          schema::accuracy_entry().name);
   }
   const schema::Entry& container = schema::entry_of(scene.container);
+  const auto* mesh = std::get_if<MeshFile>(&scene.container);
+  const bool by_formulas = mesh && mesh->true_surface;  // triangles are no wall then
   for (const auto& [key, value] : container.said(schema::options_of(scene.container))) {
-    if (key->ladder.empty()) continue;
+    if (key->ladder.empty() || by_formulas) continue;
     const Put put = [key = key](Scene& s, const schema::Value& v) {
       key->member.set(schema::options_of(s.container), v);
     };
@@ -253,6 +294,7 @@ std::vector<Knob> knobs_of(const Subject& subject, const std::filesystem::path& 
     }
     keep(std::move(knob), container.name);
   }
+  keep(surface_knob(subject), "container");
   keep(face_knob(subject, folder, record), "container");
   keep(target_knob(subject), "spheres");
   tell_apart(knobs, places);

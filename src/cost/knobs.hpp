@@ -27,8 +27,9 @@ struct Knob {
   /// The step of a number, which must be one that the key accepts; empty where there are no others.
   std::function<Step(double)> step_at = {};
   bool is_whole = false;
-  bool is_limit = false;  ///< to be turned only where the scene ends at it
-  std::string note = {};  ///< what it is, where it is no key of a scene
+  bool is_limit = false;   ///< to be turned only where the scene ends at it
+  bool tells_all = false;  ///< what each of its steps takes is said, preparing included
+  std::string note = {};   ///< what it is, where it is no key of a scene
 
   std::size_t place_of(std::size_t step) const;  ///< in the order
   /// A new step half way, the geometric mean to two digits; none where there is no room. Precondition:
@@ -42,6 +43,7 @@ struct Subject {
   std::shared_ptr<const Domain> domain;  ///< that is meant
   double attainable_packing_fraction = 0;
   double mean_radius = 1;
+  double smallest_radius = 0;  ///< all but very few are larger
   bool places_expected = false;
   bool box_follows = false;
   bool is_predicted = false;  ///< the packing fraction that is asked for

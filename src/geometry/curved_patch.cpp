@@ -14,16 +14,18 @@ using Pair = std::array<double, 2>;
 
 constexpr double pi = std::numbers::pi;
 
-/// The k-th derivatives of 1, s, cos s, sin s.
-std::array<double, 4> basis(double s, int k) {
-  const double quarter = 0.5 * pi * k;
-  const bool whole = k == 0;
-  return {whole ? 1.0 : 0.0,
-          whole    ? s
-          : k == 1 ? 1.0
-                   : 0.0,
-          whole ? std::cos(s) : std::cos(s + quarter), whole ? std::sin(s) : std::sin(s + quarter)};
-}
+/// 1, s, cos s, sin s.
+struct Basis {
+  double s, cosine, sine;
+
+  explicit Basis(double at) : s(at), cosine(std::cos(at)), sine(std::sin(at)) {}
+
+  /// The k-th derivatives.
+  std::array<double, 4> derivative(int k) const {
+    const double turned[] = {cosine, -sine, -cosine, sine};
+    return {k == 0 ? 1.0 : 0.0, k == 0 ? s : k == 1 ? 1.0 : 0.0, turned[k % 4], turned[(k + 3) % 4]};
+  }
+};
 
 /// The largest |cos| between a and b.
 double largest_cosine(double a, double b) {
@@ -32,16 +34,20 @@ double largest_cosine(double a, double b) {
   return std::max(std::abs(std::cos(a)), std::abs(std::cos(b)));
 }
 
-/// The largest absolute values of the k-th derivatives of 1, s, cos s, sin s.
-std::array<double, 4> largest_basis(double a, double b, int k) {
-  const double quarter = 0.5 * pi * k;
-  return {k == 0 ? 1.0 : 0.0,
-          k == 0   ? std::max(std::abs(a), std::abs(b))
-          : k == 1 ? 1.0
-                   : 0.0,
-          largest_cosine(a + quarter, b + quarter),
-          largest_cosine(a + quarter - 0.5 * pi, b + quarter - 0.5 * pi)};
-}
+/// The largest absolute values of the same between a and b.
+struct LargestBasis {
+  double s, cosine, sine;
+
+  LargestBasis(double a, double b)
+      : s(std::max(std::abs(a), std::abs(b))),
+        cosine(largest_cosine(a, b)),
+        sine(largest_cosine(a - 0.5 * pi, b - 0.5 * pi)) {}
+
+  std::array<double, 4> derivative(int k) const {
+    const bool even = k % 2 == 0;
+    return {k == 0 ? 1.0 : 0.0, k == 0 ? s : k == 1 ? 1.0 : 0.0, even ? cosine : sine, even ? sine : cosine};
+  }
+};
 
 /// The longer semi-axis of the ellipse cos t a + sin t b: of the matrix of their products the root of the
 /// larger eigenvalue.
@@ -50,35 +56,54 @@ double semi_axis(const Vector<3>& a, const Vector<3>& b) {
   return std::sqrt(0.5 * (aa + bb) + std::hypot(0.5 * (aa - bb), ab));
 }
 
-Vector<3> derivative_of(const Swept& patch, const Pair& at, int k, int l) {
-  const auto bu = basis(at[0], k), bv = basis(at[1], l);
+Vector<3> derivative_of(const Swept& patch, const Basis& u, const Basis& v, int k, int l) {
+  const auto bu = u.derivative(k), bv = v.derivative(l);
   Vector<3> sum = Vector<3>::Zero();
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) sum += bu[i] * bv[j] * patch.c[i][j];
   return sum;
 }
 
-/// The sum over the terms of their largest lengths; cosine and sine of u together.
-double largest_terms(const Swept& patch, const ParameterBox& box, int k, int l) {
-  const auto bu = largest_basis(box.lower[0], box.upper[0], k);
-  const auto bv = largest_basis(box.lower[1], box.upper[1], l);
-  double sum = 0;
-  for (int j = 0; j < 4; ++j) {
-    const auto& c = patch.c;
-    const double turning =
-        std::min(semi_axis(c[2][j], c[3][j]), bu[2] * c[2][j].norm() + bu[3] * c[3][j].norm());
-    sum += bv[j] * (bu[0] * c[0][j].norm() + bu[1] * c[1][j].norm() + turning);
+/// Bounds of the derivatives of a sweep in a box.
+class SweptBounds {
+ public:
+  SweptBounds(const Swept& patch, const ParameterBox& box)
+      : patch_(patch),
+        u_(box.lower[0], box.upper[0]),
+        v_(box.lower[1], box.upper[1]),
+        middle_u_(0.5 * (box.lower[0] + box.upper[0])),
+        middle_v_(0.5 * (box.lower[1] + box.upper[1])),
+        half_{0.5 * (box.upper[0] - box.lower[0]), 0.5 * (box.upper[1] - box.lower[1])} {
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 4; ++i) length_[i][j] = patch.c[i][j].norm();
+      turning_[j] = semi_axis(patch.c[2][j], patch.c[3][j]);
+    }
   }
-  return sum;
-}
 
-double largest_derivative(const Swept& patch, const ParameterBox& box, int k, int l) {
-  const Pair middle{0.5 * (box.lower[0] + box.upper[0]), 0.5 * (box.lower[1] + box.upper[1])};
-  const double from_middle = derivative_of(patch, middle, k, l).norm() +
-                             0.5 * (box.upper[0] - box.lower[0]) * largest_terms(patch, box, k + 1, l) +
-                             0.5 * (box.upper[1] - box.lower[1]) * largest_terms(patch, box, k, l + 1);
-  return std::min(from_middle, largest_terms(patch, box, k, l));
-}
+  /// The sum over the terms of their largest lengths; cosine and sine of u together.
+  double largest_terms(int k, int l) const {
+    const auto bu = u_.derivative(k), bv = v_.derivative(l);
+    double sum = 0;
+    for (int j = 0; j < 4; ++j)
+      sum += bv[j] * (bu[0] * length_[0][j] + bu[1] * length_[1][j] +
+                      std::min(turning_[j], bu[2] * length_[2][j] + bu[3] * length_[3][j]));
+    return sum;
+  }
+
+  double largest_derivative(int k, int l) const {
+    const double from_middle = derivative_of(patch_, middle_u_, middle_v_, k, l).norm() +
+                               half_[0] * largest_terms(k + 1, l) + half_[1] * largest_terms(k, l + 1);
+    return std::min(from_middle, largest_terms(k, l));
+  }
+
+ private:
+  const Swept& patch_;
+  LargestBasis u_, v_;
+  Basis middle_u_, middle_v_;
+  Pair half_;
+  std::array<std::array<double, 4>, 4> length_{};
+  std::array<double, 4> turning_{};
+};
 
 /// The control points of a line of them, `stride` apart, over [a, b] of [0, 1] in place, by de Casteljau's
 /// algorithm.
@@ -222,14 +247,15 @@ ParameterBox box_of(const ParameterTriangle& t) {
 }
 
 Vector<3> point_at(const TrueSurface::Patch& patch, const Pair& at) {
-  if (const auto* swept = std::get_if<Swept>(&patch)) return derivative_of(*swept, at, 0, 0);
+  if (const auto* swept = std::get_if<Swept>(&patch))
+    return derivative_of(*swept, Basis(at[0]), Basis(at[1]), 0, 0);
   return point_of(std::get<Bezier>(patch), at);
 }
 
 DerivativeBounds derivative_bounds(const TrueSurface::Patch& patch, const ParameterBox& box) {
   if (const auto* bezier = std::get_if<Bezier>(&patch)) return bounds_within(*bezier, box);
-  const auto& swept = std::get<Swept>(patch);
-  const auto largest = [&](int k, int l) { return largest_derivative(swept, box, k, l); };
+  const SweptBounds swept(std::get<Swept>(patch), box);
+  const auto largest = [&](int k, int l) { return swept.largest_derivative(k, l); };
   return {largest(1, 0), largest(0, 1), largest(2, 0), largest(1, 1), largest(0, 2)};
 }
 
@@ -241,7 +267,10 @@ Bending bending_of(const ParameterTriangle& t, const DerivativeBounds& bounds) {
 }
 
 double bend_of(const ParameterTriangle& t, const Bending& bending) {
-  const std::array<double, 3> q = of_edges(t, bending);
+  return bend_of_edges(of_edges(t, bending));
+}
+
+double bend_of_edges(const std::array<double, 3>& q) {
   const double x = q[0], y = q[1], z = q[2], largest = std::max({x, y, z});
   if (x + y > z && y + z > x && z + x > y) {
     // 4 x y - (x + y - z)², which does not cancel to less than its last digits where it is positive
@@ -264,7 +293,7 @@ double rounding_of(const TrueSurface::Patch& patch, const ParameterBox& box, con
     }
     size *= most / least;
   } else {
-    size = largest_terms(std::get<Swept>(patch), box, 0, 0);
+    size = SweptBounds(std::get<Swept>(patch), box).largest_terms(0, 0);
   }
   return of_terms * size + of_parameters * (bounds.u * largest(0) + bounds.v * largest(1));
 }

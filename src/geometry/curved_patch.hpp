@@ -78,8 +78,9 @@ struct Bending {
 /// B.
 Bending bending_of(const ParameterTriangle&, const DerivativeBounds&);
 
-/// e, of the triangle or a part of it.
+/// e, of the triangle or a part of it; or of one whose edges have these Q.
 double bend_of(const ParameterTriangle&, const Bending&);
+double bend_of_edges(const std::array<double, 3>& q);
 
 /// What rounding does in such a box, in units of the coordinates: 2^-43 of the terms' sizes, and of the
 /// parameters 2^-46 times their derivatives.

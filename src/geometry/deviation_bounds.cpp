@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
+#include <mutex>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "core/made.hpp"
 #include "core/parallel.hpp"
 #include "geometry/curved_patch.hpp"
 #include "geometry/point_numbers.hpp"
@@ -21,134 +23,224 @@ using Piece = TrueSurface::Piece;
 using Flat = TrueSurface::Flat;
 using Face = TrueSurface::Face;
 
-/// The flat triangles of one face, each with those that share a corner with it.
+using CornerNumbers = std::array<std::uint32_t, 3>;
+
+/// The flat triangles of one face, each with those around it.
 class Targets {
  public:
-  explicit Targets(std::span<const Flat> flats) {
-    PointNumbers<Vector<3>> numbers;
-    for (const Flat& flat : flats) {
-      const auto flat_number = static_cast<std::uint32_t>(all_.size());
-      all_.emplace_back(flat.corners[0], flat.corners[1], flat.corners[2]);
-      auto& corners = corners_.emplace_back();
-      for (int k = 0; k < 3; ++k) {
-        corners[k] = numbers.of(flat.corners[k]);
-        if (corners[k] == at_corner_.size()) at_corner_.emplace_back();
-        at_corner_[corners[k]].push_back(flat_number);
-      }
-    }
+  explicit Targets(std::span<const Flat> flats) : flats_(flats) {
+    for (const Flat& flat : flats) all_.emplace_back(flat.corners[0], flat.corners[1], flat.corners[2]);
   }
 
-  /// The largest distance of some points from one set: from that of the flat triangle, or from one around it
-  /// that is near enough, or else the nearest.
-  double distance(std::uint32_t flat, std::span<const Vector<3>> points, double enough) const {
-    double least = std::numeric_limits<double>::infinity();
-    const auto is_enough = [&](std::uint32_t number) {
-      least = std::min(least, distance_from(all_[number], points, least));
-      if (least <= enough) last_ = number;
-      return least <= enough;
-    };
-    if (is_enough(flat) || is_enough(last_)) return least;
-    for (const std::uint32_t corner : corners_[flat])
-      for (const std::uint32_t other : at_corner_[corner])
-        if (is_enough(other)) return least;
+  double distance(std::uint32_t flat, const Vector<3>& p) const { return all_[flat].offset(p).norm(); }
+
+  /// The largest distance of some points from one triangle: from `flat`, or from one that is reached from
+  /// there by going to a nearer one around it until it is near `enough`. `flat` becomes that one.
+  double distance(std::span<const Vector<3>> points, double enough, std::uint32_t& flat) const {
+    double least = distance_from(flat, points, std::numeric_limits<double>::infinity());
+    if (least > enough) std::call_once(is_known_, [&] { find_around(); });
+    for (bool nearer = true; nearer && least > enough;) {
+      nearer = false;
+      const auto begin = around_.begin() + static_cast<std::ptrdiff_t>(first_[flat]);
+      for (const std::uint32_t other : std::span(begin, first_[flat + 1] - first_[flat]))
+        if (const double here = distance_from(other, points, least); here < least)
+          least = here, flat = other, nearer = true;
+    }
     return least;
   }
 
  private:
+  void find_around() const {
+    PointNumbers<Vector<3>> numbers;
+    std::vector<CornerNumbers> corners;
+    for (const Flat& flat : flats_)
+      corners.push_back(
+          {numbers.of(flat.corners[0]), numbers.of(flat.corners[1]), numbers.of(flat.corners[2])});
+    std::vector<std::uint32_t> first(numbers.points.size() + 1, 0), at_corner(3 * flats_.size());
+    for (const CornerNumbers& own : corners)
+      for (const std::uint32_t corner : own) ++first[corner + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> end(first.begin(), first.end() - 1);
+    for (std::uint32_t flat = 0; flat < corners.size(); ++flat)
+      for (const std::uint32_t corner : corners[flat]) at_corner[end[corner]++] = flat;
+    for (std::uint32_t flat = 0; flat < corners.size(); ++flat)
+      add_around(flat, corners, [&](std::uint32_t corner) {
+        return std::span(at_corner).subspan(first[corner], first[corner + 1] - first[corner]);
+      });
+  }
+
+  /// Those that share a corner; of a corner of very many, such as the pole of a ball, those that share
+  /// another one, too.
+  template <class AtCorner>
+  void add_around(std::uint32_t flat, const std::vector<CornerNumbers>& corners,
+                  const AtCorner& at_corner) const {
+    constexpr std::size_t many = 16;
+    const auto begin = static_cast<std::ptrdiff_t>(around_.size());
+    for (const std::uint32_t corner : corners[flat])
+      for (const std::uint32_t other : at_corner(corner)) {
+        const auto shared = std::ranges::count_if(corners[flat], [&](std::uint32_t own) {
+          return std::ranges::find(corners[other], own) != corners[other].end();
+        });
+        if (other != flat && (shared > 1 || at_corner(corner).size() <= many)) around_.push_back(other);
+      }
+    std::sort(around_.begin() + begin, around_.end());
+    around_.erase(std::unique(around_.begin() + begin, around_.end()), around_.end());
+    first_.push_back(around_.size());
+  }
+
   /// Or more than `most`.
-  static double distance_from(const PreparedTriangle& target, std::span<const Vector<3>> points,
-                              double most) {
+  double distance_from(std::uint32_t flat, std::span<const Vector<3>> points, double most) const {
     double largest = 0;
     for (const Vector<3>& p : points)
-      if (largest <= most) largest = std::max(largest, target.offset(p).norm());
+      if (largest <= most) largest = std::max(largest, distance(flat, p));
     return largest;
   }
 
+  Made made_{"true surface"};
   std::vector<PreparedTriangle> all_;
-  mutable std::uint32_t last_ = 0;  ///< the one that was near enough; any may be
-  std::vector<std::array<std::uint32_t, 3>> corners_;
-  std::vector<std::vector<std::uint32_t>> at_corner_;
+  std::span<const Flat> flats_;
+  mutable std::once_flag is_known_;  ///< what is around: few faces need it
+  mutable std::vector<std::uint32_t> around_;
+  mutable std::vector<std::size_t> first_{0};  ///< in `around_`
 };
 
-/// The pieces of a face, how much each bends and what is added to that, and its flat triangles.
+/// What is found and what is proven of some pieces.
+struct Known {
+  double found = -1, apart = 0, track = 0;
+  Vector<3> where = Vector<3>::Zero();
+
+  void add(const Known& more) {
+    if (more.found > found) found = more.found, where = more.where;
+    apart = std::max(apart, more.apart);
+    track = std::max(track, more.track);
+  }
+};
+
+/// The pieces of a face and its flat triangles.
 struct FacePieces {
   std::span<const TrueSurface::Patch> patches;
   std::span<const Piece> pieces;
-  std::span<const Flat> flats;
+  Targets targets;
   std::uint32_t first_flat;
-  std::vector<Bending> bendings = {};
-  std::vector<double> slacks = {};
-
-  void set_bendings() {
-    constexpr double rounding = 4;  // of points and, once more, of the distances that others compute of them
-    for (const Piece& piece : pieces) {
-      const ParameterBox box = box_of(piece.at);
-      const DerivativeBounds derivatives = derivative_bounds(patches[piece.patch], box);
-      bendings.push_back(bending_of(piece.at, derivatives));
-      slacks.push_back(piece.slack + rounding * rounding_of(patches[piece.patch], box, derivatives));
-    }
-  }
 };
 
-/// The largest distance of pieces from the convex sets, by branch and bound.
-class Largest {
+/// The largest distance of one piece from flat triangles, by branch and bound. A part is done with when what
+/// is proven of it is at most a tenth above what has been found anywhere.
+class Branching {
  public:
-  /// Stops where a bound is at most a tenth and `negligible` above what occurs. `around`: whether a piece may
-  /// be near to a flat triangle beside its own.
-  Largest(const FacePieces& face, bool around, double negligible)
-      : face_(face), targets_(face.flats), around_(around), negligible_(negligible) {
-    for (const Piece& piece : face.pieces) {
-      const auto& at = piece.at;
-      note(piece, {(at[0][0] + at[1][0] + at[2][0]) / 3, (at[0][1] + at[1][1] + at[2][1]) / 3});
-      for (const auto& corner : at) note(piece, corner);
-    }
-    for (std::size_t k = 0; k < face.pieces.size(); ++k)
-      divide(face.pieces[k], face.pieces[k].at, face.bendings[k], face.slacks[k], 0);
+  Branching(const FacePieces& face, const Piece& piece)
+      : face_(face),
+        patch_(face.patches[piece.patch]),
+        flat_(piece.flat - face.first_flat),
+        near_(flat_),
+        slack_(piece.slack) {
+    for (int k = 0; k < 3; ++k) whole_.corner[k] = corner_at(piece.at[k]);
   }
 
-  double proven() const { return proven_; }
-  const Vector<3>& where() const { return where_; }
+  /// Looks at few points.
+  void look(Known& known) {
+    for (const Corner& corner : whole_.corner) note(corner, known);
+    const Parameters &a = whole_.corner[0].at, &b = whole_.corner[1].at, &c = whole_.corner[2].at;
+    note(corner_at({(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3}), known);
+  }
+
+  void prove(Known& known) {
+    constexpr double rounding = 4;  // of points and, once more, of the distances that others compute of them
+    const ParameterTriangle at = whole_.at();
+    const ParameterBox box = box_of(at);
+    const DerivativeBounds derivatives = derivative_bounds(patch_, box);
+    bending_ = bending_of(at, derivatives);
+    slack_ += rounding * rounding_of(patch_, box, derivatives);
+    divide(whole_, 0, known);
+  }
 
  private:
-  double distance(const Piece& piece, std::span<const Vector<3>> points, double enough) const {
-    return targets_.distance(piece.flat - face_.first_flat, points,
-                             around_ ? enough : std::numeric_limits<double>::infinity());
+  using Parameters = std::array<double, 2>;
+
+  /// `off`: from the flat triangle that the piece belongs to.
+  struct Corner {
+    Parameters at;
+    Vector<3> place;
+    double off;
+  };
+
+  struct Part {
+    std::array<Corner, 3> corner;
+
+    ParameterTriangle at() const { return {corner[0].at, corner[1].at, corner[2].at}; }
+    double off() const { return std::max({corner[0].off, corner[1].off, corner[2].off}); }
+  };
+
+  Corner corner_at(const Parameters& at) const {
+    const Vector<3> place = point_at(patch_, at);
+    return {at, place, face_.targets.distance(flat_, place)};
   }
 
-  void note(const Piece& piece, const std::array<double, 2>& at) {
-    const Vector<3> point = point_at(face_.patches[piece.patch], at);
-    const double here = distance(piece, {&point, 1}, found_);
-    if (here > found_) found_ = here, where_ = point;
+  void note(const Corner& corner, Known& known) {
+    if (!(corner.off > known.found)) return;
+    const double here = face_.targets.distance({&corner.place, 1}, known.found, near_);
+    if (here > known.found) known.found = here, known.where = corner.place;
   }
 
-  void divide(const Piece& piece, const ParameterTriangle& at, const Bending& bending, double slack,
-              int depth) {
-    constexpr int deepest = 24;
-    const double bend = bend_of(at, bending);
-    std::array<Vector<3>, 3> corners;
-    for (int k = 0; k < 3; ++k) corners[k] = point_at(face_.patches[piece.patch], at[k]);
-    const auto enough = [&] { return 1.1 * found_ + negligible_ - bend; };
-    const double off = distance(piece, corners, enough());
-    if (off > found_)
-      for (const auto& p : at) note(piece, p);
-    if (off <= enough() || bend <= slack || depth == deepest) {
-      proven_ = std::max(proven_, off + bend + slack);
+  /// From one triangle, the piece's own or one that is nearer.
+  double off_around(const Part& part, double enough) {
+    const std::array<Vector<3>, 3> places{part.corner[0].place, part.corner[1].place, part.corner[2].place};
+    return std::min(part.off(), face_.targets.distance(places, enough, near_));
+  }
+
+  void divide(const Part& part, int depth, Known& known) {
+    constexpr int deepest = 48;
+    const ParameterTriangle at = part.at();
+    const double bend = bend_of(at, bending_), own = part.off();
+    const auto enough = [&] { return 1.1 * known.found - bend; };
+    double off = own;
+    if (own > known.found) {
+      for (const Corner& corner : part.corner) note(corner, known);
+      if (own > enough()) off = off_around(part, enough());
+    }
+    if (off <= enough() || bend <= slack_ || depth == deepest || --left_ < 0) {
+      known.apart = std::max(known.apart, off + bend + slack_);
+      known.track = std::max(known.track, own + bend + slack_);
       return;
     }
-    const int edge = edge_to_halve(at, bending);
-    ParameterTriangle first = at, second = at;
-    first[(edge + 1) % 3] = second[edge] = middle_of_edge(at, edge);
-    divide(piece, first, bending, slack, depth + 1);
-    divide(piece, second, bending, slack, depth + 1);
+    const int edge = edge_to_halve(at, bending_), next = (edge + 1) % 3;
+    const Corner middle = corner_at(middle_of_edge(at, edge));
+    Part first = part, second = part;
+    first.corner[next] = second.corner[edge] = middle;
+    divide(first, depth + 1, known);
+    divide(second, depth + 1, known);
   }
 
+  /// A piece takes some ten; one that swirls around the pole of a ball some hundred.
+  static constexpr int most_parts = 1 << 16;
+
   const FacePieces& face_;
-  Targets targets_;
-  bool around_;
-  double negligible_;
-  double found_ = -1, proven_ = 0;
-  Vector<3> where_ = Vector<3>::Zero();
+  const TrueSurface::Patch& patch_;
+  std::uint32_t flat_, near_;  ///< the triangle that was near enough last
+  double slack_;
+  Bending bending_ = {};
+  Part whole_ = {};
+  int left_ = most_parts;
 };
+
+/// The same for any number of threads: pieces are taken in groups of one size, each of which begins with what
+/// a look at all of them has found.
+Known known_of(const FacePieces& face) {
+  constexpr std::size_t group = 512;
+  std::vector<Known> of_groups((face.pieces.size() + group - 1) / group);
+  const auto in_groups = [&](const auto& act) {
+    parallel_for(of_groups.size(), [&](std::size_t g) {
+      for (std::size_t k = g * group; k < std::min(face.pieces.size(), (g + 1) * group); ++k)
+        act(Branching(face, face.pieces[k]), of_groups[g]);
+    });
+    Known all;
+    for (const Known& known : of_groups) all.add(known);
+    return all;
+  };
+  const Known seen = in_groups([](Branching branching, Known& known) { branching.look(known); });
+  std::ranges::fill(of_groups, seen);
+  return in_groups([](Branching branching, Known& known) { branching.prove(known); });
+}
 
 /// Where what belongs to each face begins, and where all ends. Precondition: face_of(k) does not decrease.
 template <class FaceOf>
@@ -159,15 +251,15 @@ std::vector<std::size_t> first_of_faces(std::size_t faces, std::size_t count, co
   return first;
 }
 
-bool has_area(const std::array<std::uint32_t, 3>& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+bool has_area(const CornerNumbers& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
 
-std::array<std::uint32_t, 3> sorted(std::array<std::uint32_t, 3> t) {
+CornerNumbers sorted(CornerNumbers t) {
   std::ranges::sort(t);
   return t;
 }
 
 /// Whether b names the corners of a in the opposite sense.
-bool is_turned(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
+bool is_turned(const CornerNumbers& a, const CornerNumbers& b) {
   const auto k = static_cast<std::size_t>(std::ranges::find(b, a[0]) - b.begin());
   return b[(k + 1) % 3] != a[1];
 }
@@ -188,43 +280,50 @@ void set_deviation_bounds(TrueSurface& surface) {
       const auto part = [f](const auto& all, const std::vector<std::size_t>& first) {
         return std::span(all).subspan(first[f], first[f + 1] - first[f]);
       };
-      FacePieces pieces{surface.patches, part(std::as_const(surface.pieces), first_piece),
-                        part(std::as_const(surface.flats), first_flat),
-                        static_cast<std::uint32_t>(first_flat[f])};
-      pieces.set_bendings();
-      const Largest apart(pieces, true, 0);
-      const Largest track(pieces, false, apart.proven());
-      face.apart = apart.proven();
-      face.track = track.proven();
-      face.worst = apart.where();
+      const Known known = known_of({surface.patches, part(std::as_const(surface.pieces), first_piece),
+                                    Targets(part(std::as_const(surface.flats), first_flat)),
+                                    static_cast<std::uint32_t>(first_flat[f])});
+      face.apart = known.apart;
+      face.track = known.track;
+      face.worst = known.where;
     }
   });
 }
 
 bool restrict_to(TrueSurface& surface, const Mesh& mesh) {
   PointNumbers<Vector<3>> numbers;
-  std::map<std::array<std::uint32_t, 3>, std::array<std::uint32_t, 3>> left;
+  std::vector<std::uint32_t> of_vertex;
+  for (const Vector<3>& v : mesh.vertices) of_vertex.push_back(numbers.of(v));
+  struct Triangle {
+    CornerNumbers key, corners;
+    bool found = false;
+  };
+  std::vector<Triangle> triangles;
   for (const FaceCorners& t : mesh.triangles) {
-    std::array<std::uint32_t, 3> corners;
-    for (int k = 0; k < 3; ++k) corners[k] = numbers.of(mesh.vertices[t[k]]);
-    left.emplace(sorted(corners), corners);
+    const CornerNumbers corners{of_vertex[t[0]], of_vertex[t[1]], of_vertex[t[2]]};
+    triangles.push_back({sorted(corners), corners});
   }
+  std::ranges::sort(triangles, {}, &Triangle::key);
+  std::size_t left = triangles.size();
   enum class Is { unknown, there, absent };
   std::vector<Is> is(surface.faces.size(), Is::unknown);
   for (Flat& flat : surface.flats) {
-    std::array<std::uint32_t, 3> corners;
+    CornerNumbers corners;
     for (int k = 0; k < 3; ++k) corners[k] = numbers.of(flat.corners[k]);
     if (!has_area(corners)) continue;
-    const auto found = left.find(sorted(corners));
-    const Is here = found == left.end() ? Is::absent : Is::there;
+    const CornerNumbers key = sorted(corners);
+    const auto found = std::ranges::lower_bound(triangles, key, {}, &Triangle::key);
+    const bool is_there = found != triangles.end() && found->key == key && !found->found;
+    const Is here = is_there ? Is::there : Is::absent;
     Is& face = is[flat.face];
     if (face != Is::unknown && face != here) return false;
     face = here;
     if (here == Is::absent) continue;
-    if (is_turned(corners, found->second)) std::swap(flat.corners[1], flat.corners[2]);
-    left.erase(found);
+    if (is_turned(corners, found->corners)) std::swap(flat.corners[1], flat.corners[2]);
+    found->found = true;
+    --left;
   }
-  if (!left.empty()) return false;
+  if (left > 0) return false;
 
   constexpr std::uint32_t none = 0xFFFFFFFF;
   std::vector<std::uint32_t> new_face(surface.faces.size(), none), new_flat(surface.flats.size(), none);

@@ -1,6 +1,6 @@
 #pragma once
 #include <array>
-#include <boost/functional/hash.hpp>
+#include <bit>
 #include <boost/unordered/unordered_map.hpp>
 #include <cstdint>
 #include <utility>
@@ -22,7 +22,18 @@ class PointNumbers {
   std::vector<Point> points;  ///< in order of first occurrence
 
  private:
-  boost::unordered_map<std::array<double, 3>, std::uint32_t> number_;
+  struct HashOfBits {
+    std::size_t operator()(const std::array<double, 3>& p) const {
+      std::uint64_t hash = 0;
+      for (const double x : p) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15;
+        hash ^= hash >> 32U;
+      }
+      return hash;
+    }
+  };
+
+  boost::unordered_map<std::array<double, 3>, std::uint32_t, HashOfBits> number_;
 };
 
 /// Maps the corners of triangles by a function of their numbers.

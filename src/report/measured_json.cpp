@@ -4,6 +4,7 @@
 
 #include "bernal/core/text.hpp"
 #include "bernal/report/json.hpp"
+#include "geometry/surface_kinds.hpp"
 
 namespace bernal {
 
@@ -235,6 +236,19 @@ Json figures_of(const std::optional<SizeComparison>& sizes) {
 
 }  // namespace
 
+Json surface_json(const TrueSurface& surface) {
+  const TrueSurface::Face& worst = surface.worst_face();
+  Json kinds = Json::array();
+  for (const SurfaceKind& kind : kinds_of(surface))
+    kinds.push_back({{"kind", kind.name}, {"faces", kind.faces}, {"share_of_area", kind.share}});
+  return {{"bound", worst.apart},
+          {"face", worst.number},
+          {"kind", worst.kind},
+          {"at", worst.worst},
+          {"edges_known_to", surface.largest(&TrueSurface::Face::tolerance)},
+          {"kinds", kinds}};
+}
+
 Json::object_t::value_type domain_json(const Domain& domain) {
   const Box* box = std::get_if<Box>(&domain);
   if (box && (box->repeats() || box->dimension() != 3)) {
@@ -245,6 +259,8 @@ Json::object_t::value_type domain_json(const Domain& domain) {
   }
   Json container = {{"kind", kind_of(domain)}, {"volume", volume_of(domain)}, {"bounds", bounds_of(domain)}};
   if (is_periodic(domain)) container["periods"] = boundary_of<3>(domain).edges;
+  if (const auto* mesh = std::get_if<Mesh>(&domain); mesh && mesh->surface)
+    container["true_surface"] = surface_json(*mesh->surface);
   return {"container", container};
 }
 

@@ -30,6 +30,10 @@ namespace bernal {
 /// axes.
 Json::object_t::value_type domain_json(const Domain&);
 
+/// How far the surface of a CAD file is proven to be from its triangles at most, where, and of what it
+/// consists.
+Json surface_json(const TrueSurface&);
+
 /// For report.json: contacts, then the figures of all measurements; `bernal measure` returns the tables.
 Json measured_figures(const Measurements&);
 

@@ -5,6 +5,7 @@
 #include "bernal/report/json.hpp"
 #include "bernal/scene/read_scene.hpp"
 #include "report/describe.hpp"
+#include "report/measured_json.hpp"
 #include "report/size_summary.hpp"
 #include "scene/scene_entries.hpp"
 
@@ -38,6 +39,8 @@ std::string plan_as_json(const Plan& plan) {
   if (!plan.scene.is_periodic()) {
     const Bounds<3> bounds = bounds_of(plan.domain);
     container["bounds"] = {bounds.lower, bounds.upper};
+    if (const auto* mesh = std::get_if<Mesh>(&plan.domain); mesh && mesh->surface)
+      container["true_surface"] = surface_json(*mesh->surface);
   } else {
     const Vector<dynamic> edges = bounds_of<dynamic>(plan.domain).size();
     container["edges"] = std::vector<double>(edges.begin(), edges.end());

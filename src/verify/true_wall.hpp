@@ -1,5 +1,6 @@
 #pragma once
 #include "bernal/domain/domain.hpp"
+#include "core/made.hpp"
 #include "geometry/curved_patch.hpp"
 #include "verify/mesh_wall.hpp"
 
@@ -38,6 +39,7 @@ class TrueWall {
 
   static std::vector<Piece> pieces_of(const TrueSurface&);
 
+  Made made_{"true surface"};
   const TrueSurface& surface_;
   MeshWall triangles_;
   BoxTree<Piece, 3> pieces_;

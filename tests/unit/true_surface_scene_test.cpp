@@ -9,6 +9,7 @@
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "cad/read/polygon_soup.hpp"
+#include "core/made.hpp"
 #include "support/folder.hpp"
 #include "support/plans.hpp"
 
@@ -69,8 +70,7 @@ TEST_F(TrueSurfaceScene, WhatDoesNotGoWithItIsRefused) {
             std::string::npos);
 }
 
-// A corner that is known to half a unit could let a sphere of that size out. The mesher of OpenCASCADE fails
-// there as well, so which of the two is said is open.
+// A corner that is known to half a unit could let a sphere of that size out.
 TEST_F(TrueSurfaceScene, AToleranceLargerThanASphereIsRefused) {
   std::string brep = testing::text_of(std::filesystem::path(meshes) / "frustum.brep");
   const std::string sharp = "\nVe\n1e-07\n";
@@ -79,7 +79,34 @@ TEST_F(TrueSurfaceScene, AToleranceLargerThanASphereIsRefused) {
   brep.replace(at, sharp.size(), "\nVe\n0.5\n");
   const testing::Folder folder;
   const std::string file = folder.write("loose.brep", brep).string();
-  EXPECT_NE(refusal(scene(file, "", "0.4")), "");
+  const std::string said = refusal(scene(file, "", "0.4"));
+  EXPECT_NE(said.find("loose.brep: face 1 (cone) has a corner at "), std::string::npos) << said;
+  EXPECT_NE(said.find(", which the file knows to 0.5 only, no less than the smallest sphere's radius of 0.4; "
+                      "export the part again with a finer tolerance, or take the key out"),
+            std::string::npos)
+      << said;
+}
+
+// In the process that reads the file, in the bounds and in the certificate; `tests/effects` asks the same of
+// every other scene.
+TEST_F(TrueSurfaceScene, NothingOfItIsMadeWhereNoSceneNamesIt) {
+  const auto made_for = [](const std::string& toml) {
+    const std::uint64_t before = made_so_far()["true surface"];
+    const Plan plan = testing::plan_of(toml);
+    Spheres<dynamic> one(3);
+    one.push_back(Vector<3>(45, 20, 10), 1);
+    certify(one, plan.domain);
+    return made_so_far()["true surface"] - before;
+  };
+  const std::string block = std::string(meshes) + "block_fillets_bore.step";
+  const std::string named = scene(block, "", "2.5");
+  std::string unnamed = named;
+  unnamed.replace(unnamed.find("true_surface = true"), 19, "");
+  EXPECT_EQ(made_for(unnamed), 0U);
+  EXPECT_GT(made_for(named), 1U);
+  EXPECT_EQ(made_for("unit = \"mm\"\n[container]\nkind = \"mesh\"\nfile = \"" + std::string(meshes) +
+                     "hopper.stl\"\n[spheres]\nradius = 0.1\ncount = 5\n"),
+            0U);
 }
 
 }  // namespace true_surface_scene_test

@@ -1,6 +1,7 @@
 // How far the surface of a CAD file is from its triangles, as it is proven, against closed forms and a
 // million points; and spheres certified against that surface.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <memory>
@@ -193,13 +194,26 @@ double distance_by_samples(const TrueSurface& surface, const Vector<3>& p) {
   Parameters at{};
   const TrueSurface::Patch* patch = nullptr;
   for (const TrueSurface::Piece& piece : surface.pieces)
-    for (const Parameters& q : piece.at)
+    for (int n = 0; n < 28; ++n) {  // points of a lattice on it, corners among them
+      const int i = n % 7, j = n / 7;
+      const double a = std::min(i, 6 - j) / 6.0, b = j / 6.0;
+      Parameters q{};
+      for (int k = 0; k < 2; ++k)
+        q[k] = a * piece.at[0][k] + b * piece.at[1][k] + (1 - a - b) * piece.at[2][k];
       if (const double d = (point_at(surface.patches[piece.patch], q) - p).norm(); d < best)
         best = d, at = q, patch = &surface.patches[piece.patch];
+    }
   for (double step = 0.1; step > 1e-12; step *= 0.5)  // downhill in a pattern
     for (bool moved = true; moved;) {
       moved = false;
-      for (const auto& [u, v] : {std::pair(step, 0.0), {-step, 0.0}, {0.0, step}, {0.0, -step}})
+      for (const auto& [u, v] : {std::pair(step, 0.0),
+                                 {-step, 0.0},
+                                 {0.0, step},
+                                 {0.0, -step},
+                                 {step, step},
+                                 {-step, -step},
+                                 {step, -step},
+                                 {-step, step}})
         if (const double d = (point_at(*patch, {at[0] + u, at[1] + v}) - p).norm(); d < best)
           best = d, at = {at[0] + u, at[1] + v}, moved = true;
     }
@@ -263,6 +277,30 @@ TEST_F(InCadFile, AMillionPointsOfABSplineAreWithinTheBound) {
     EXPECT_LE(track[f], surface.faces[f].track);
     EXPECT_LE(surface.faces[f].track, 3 * track[f] + surface.faces[f].apart);
   }
+}
+
+// Pieces are shared out to threads in groups that do not depend on how many there are.
+TEST_F(InCadFile, TheBoundsAreTheSameForAnyNumberOfThreads) {
+  TrueSurface surface = *part("round_bodies_inch.step", 400, "3").surface;
+  const std::vector<TrueSurface::Face> known = surface.faces;
+  for (const std::size_t threads : {1, 2, 5}) {
+    const tbb::global_control most(tbb::global_control::max_allowed_parallelism, threads);
+    set_deviation_bounds(surface);
+    for (std::size_t f = 0; f < known.size(); ++f) {
+      EXPECT_EQ(surface.faces[f].apart, known[f].apart);
+      EXPECT_EQ(surface.faces[f].track, known[f].track);
+      EXPECT_EQ(surface.faces[f].worst, known[f].worst);
+    }
+  }
+}
+
+/// What is proven of a ball whose triangles meet at its poles: no more than of a thousand more triangles
+/// elsewhere.
+TEST_F(InCadFile, ABallIsAsNearAtItsPoles) {
+  const Mesh ball = part("round_bodies_inch.step", 40, "2");
+  const auto& face = ball.surface->worst_face();
+  EXPECT_LT(face.apart, 1e-3 * 40);
+  EXPECT_LT(face.track, 40 / 4.0);
 }
 
 TEST_F(InCadFile, WhatCannotBeProvenSaysWhy) {

@@ -19,6 +19,7 @@
 #include <TopoDS_Vertex.hxx>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bernal::cad {
 namespace {
@@ -113,9 +114,8 @@ class LineMaker {
     if (curve.IsNull() || other.IsNull()) throw Standard_Failure("an edge has no curve on it");
     if (other->Value(t).Distance(p) < curve->Value(t).Distance(p)) curve = other;
     curve_.emplace(curve, first, last);
-    double first_in_space = 0, last_in_space = 0;
-    in_space_ = BRep_Tool::Curve(edge, first_in_space, last_in_space);
-    if (first_in_space != first || last_in_space != last) in_space_.Nullify();  // parameters are not the same
+    first_ = first, last_ = last;
+    in_space_ = BRep_Tool::Curve(edge, first_in_space_, last_in_space_);
   }
 
   BoundaryLine line(double from, double to, const Parameters& start, const Parameters& end) {
@@ -157,15 +157,38 @@ class LineMaker {
 
   void measure(BoundaryLine& line, const Parameters& p, double t) const {
     if (in_space_.IsNull()) return;
-    const gp_Pnt q = in_space_->Value(t);
-    const double gap = (patches_.point_at(p) - Vector<3>(q.X(), q.Y(), q.Z())).norm();
+    const double share = last_ > first_ ? (t - first_) / (last_ - first_) : 0;
+    const double gap = distance_from_curve(patches_.point_at(p),
+                                           first_in_space_ + share * (last_in_space_ - first_in_space_));
     line.tolerance = std::max(line.tolerance, gap);
+  }
+
+  /// From a point of the edge's curve in space, so no less than the distance from that curve: the nearest of
+  /// some, by Newton's method from the same parameter, which need not be the nearest where the two curves are
+  /// passed at different speeds.
+  double distance_from_curve(const Vector<3>& p, double t) const {
+    constexpr int most = 8;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < most; ++k) {
+      gp_Pnt q;
+      gp_Vec along;
+      in_space_->D1(t, q, along);
+      const Vector<3> off = p - Vector<3>(q.X(), q.Y(), q.Z());
+      if (!(off.norm() < least)) break;
+      least = off.norm();
+      const double squared = along.SquareMagnitude();
+      if (least <= tolerance_ || !(squared > 0)) break;
+      t += off.dot(Vector<3>(along.X(), along.Y(), along.Z())) / squared;
+      t = std::clamp(t, first_in_space_, last_in_space_);
+    }
+    return least;
   }
 
   FacePatches& patches_;
   double fine_, tolerance_;
   std::optional<EdgeCurve> curve_;
   handle<Geom_Curve> in_space_;
+  double first_ = 0, last_ = 0, first_in_space_ = 0, last_in_space_ = 0;
 };
 
 double tolerance_of(const TopoDS_Vertex& vertex) {
@@ -201,6 +224,36 @@ Boundary boundary_of(const TopoDS_Face& face, const handle<Poly_Triangulation>& 
     }
   }
   return boundary;
+}
+
+void cut(Boundary& boundary, const std::array<std::uint32_t, 2>& edge, std::uint32_t node,
+         const Parameters& at) {
+  auto line = boundary.extract(edge);
+  std::array<std::uint32_t, 2> nodes = edge;
+  if (line.empty()) {
+    std::swap(nodes[0], nodes[1]);
+    line = boundary.extract(nodes);
+  }
+  if (line.empty()) throw Standard_Failure("a pole is no edge of it");
+  const BoundaryLine& whole = line.mapped();
+  const auto length_of = [&](std::size_t k) {
+    return std::hypot(whole.points[k + 1][0] - whole.points[k][0],
+                      whole.points[k + 1][1] - whole.points[k][1]);
+  };
+  std::size_t longest = 0;  // the others are roundoffs
+  for (std::size_t k = 0; k < whole.off.size(); ++k)
+    if (length_of(k) > length_of(longest)) longest = k;
+  const auto end = static_cast<std::ptrdiff_t>(longest) + 1;
+  BoundaryLine first = whole, second = whole;
+  first.points.erase(first.points.begin() + end, first.points.end());
+  first.points.push_back(at);
+  first.off.resize(longest + 1);
+  first.tolerance_to = second.tolerance_from = 0;
+  second.points.erase(second.points.begin(), second.points.begin() + end);
+  second.points.insert(second.points.begin(), at);
+  second.off.erase(second.off.begin(), second.off.begin() + end - 1);
+  boundary.emplace(std::array{nodes[0], node}, std::move(first));
+  boundary.emplace(std::array{node, nodes[1]}, std::move(second));
 }
 
 }  // namespace bernal::cad

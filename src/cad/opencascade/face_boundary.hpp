@@ -31,4 +31,7 @@ using Boundary = std::map<std::array<std::uint32_t, 2>, BoundaryLine>;
 Boundary boundary_of(const TopoDS_Face&, const opencascade::handle<Poly_Triangulation>&,
                      const TopLoc_Location&, FacePatches&, double fine);
 
+/// Cuts a straight line at a node.
+void cut(Boundary&, const std::array<std::uint32_t, 2>& edge, std::uint32_t node, const Parameters& at);
+
 }  // namespace bernal::cad

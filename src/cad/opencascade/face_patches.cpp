@@ -26,6 +26,8 @@
 
 #include <Eigen/Geometry>
 
+#include "cad/opencascade/turned_spline.hpp"
+
 namespace bernal::cad {
 namespace {
 
@@ -125,19 +127,6 @@ std::optional<Swept> swept_of(const handle<Geom_Surface>& surface) {
   return {};
 }
 
-std::string kind_of(const handle<Geom_Surface>& surface) {
-  if (as<Geom_Plane>(surface)) return "plane";
-  if (as<Geom_CylindricalSurface>(surface)) return "cylinder";
-  if (as<Geom_ConicalSurface>(surface)) return "cone";
-  if (as<Geom_SphericalSurface>(surface)) return "sphere";
-  if (as<Geom_ToroidalSurface>(surface)) return "torus";
-  if (as<Geom_BoundedSurface>(surface)) return "B-spline";
-  if (as<Geom_SurfaceOfRevolution>(surface)) return "surface of revolution";
-  if (as<Geom_SurfaceOfLinearExtrusion>(surface)) return "extrusion";
-  if (as<Geom_OffsetSurface>(surface)) return "offset surface";
-  return "surface of an unknown kind";
-}
-
 Bezier bezier_of(const Geom_BezierSurface& patch, const Parameters& lower, const Parameters& upper) {
   Bezier bezier{{patch.UDegree(), patch.VDegree()}, lower, upper, {}};
   for (int i = 1; i <= patch.NbUPoles(); ++i)
@@ -161,6 +150,22 @@ handle<Geom_BSplineSurface> without_periods(const handle<Geom_BSplineSurface>& s
 
 }  // namespace
 
+std::string kind_of(const handle<Geom_Surface>& given) {
+  handle<Geom_Surface> surface = given;
+  while (const auto trimmed = as<Geom_RectangularTrimmedSurface>(surface)) surface = trimmed->BasisSurface();
+
+  if (as<Geom_Plane>(surface)) return "plane";
+  if (as<Geom_CylindricalSurface>(surface)) return "cylinder";
+  if (as<Geom_ConicalSurface>(surface)) return "cone";
+  if (as<Geom_SphericalSurface>(surface)) return "sphere";
+  if (as<Geom_ToroidalSurface>(surface)) return "torus";
+  if (as<Geom_BoundedSurface>(surface)) return "B-spline";
+  if (as<Geom_SurfaceOfRevolution>(surface)) return "surface of revolution";
+  if (as<Geom_SurfaceOfLinearExtrusion>(surface)) return "extrusion";
+  if (as<Geom_OffsetSurface>(surface)) return "offset surface";
+  return "surface of an unknown kind";
+}
+
 FacePatches::FacePatches(const handle<Geom_Surface>& given, const ParameterBox& box, TrueSurface& into)
     : surface_(into) {
   handle<Geom_Surface> surface = given;
@@ -177,6 +182,12 @@ FacePatches::FacePatches(const handle<Geom_Surface>& given, const ParameterBox& 
     set_spline(surface);
   else if (as<Geom_SurfaceOfLinearExtrusion>(surface))
     set_extruded(surface, box);
+  else if (const auto revolved = as<Geom_SurfaceOfRevolution>(surface)) {
+    PatchGrid grid = turned_spline(*revolved);
+    knots_ = std::move(grid.knots);
+    period_ = grid.period;
+    of_cells_ = std::move(grid.cells);
+  }
   if (of_cells_.empty()) without_bound_ = "nothing bounds the derivatives of this kind of surface";
   for (const TrueSurface::Patch& patch : of_cells_)
     if (const auto* bezier = std::get_if<Bezier>(&patch);

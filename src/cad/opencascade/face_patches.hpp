@@ -15,10 +15,13 @@ namespace bernal::cad {
 
 using Parameters = std::array<double, 2>;
 
+/// "plane", "B-spline", …
+std::string kind_of(const opencascade::handle<Geom_Surface>&);
+
 /// The formulas of one face, in patches over the cells of a grid of parameters, which are appended to a
 /// surface when a piece needs them. Planes, cylinders, cones, spheres, tori, surfaces of revolution and
-/// extrusions of lines, circles and ellipses are one patch; B-splines and their extrusions have one in each
-/// cell between knots, also in later periods.
+/// extrusions of lines, circles and ellipses are one patch; B-splines, their extrusions and surfaces of
+/// revolution have one in each cell between knots, also in later periods.
 class FacePatches {
  public:
   /// `box`: the parameters that the face covers.

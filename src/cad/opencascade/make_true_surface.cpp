@@ -8,7 +8,6 @@
 #include <TopoDS_Vertex.hxx>
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "kernels/closest_point.hpp"
 
@@ -38,29 +37,34 @@ ParameterBox box_of(const FaceTriangles& triangles) {
   return box;
 }
 
-std::array<std::uint32_t, 2> ascending(std::uint32_t a, std::uint32_t b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
 /// The triangles of a face, each of which ends at its edges where it is at the rim.
 class Cover {
  public:
   Cover(const FaceTriangles& triangles, const Boundary& boundary, FacePatches& patches,
         std::uint32_t first_flat)
       : triangles_(triangles), boundary_(boundary), patches_(patches), first_flat_(first_flat) {
-    for (const Corners& t : triangles.triangles)
+    for (std::uint32_t t = 0; t < triangles.triangles.size(); ++t)
       for (int k = 0; k < 3; ++k) {
-        const auto edge = ascending(t[k], t[(k + 1) % 3]);
-        if (!rim_.insert(edge).second) rim_.erase(edge);
-        if (has_area(t)) beside_[edge].push_back(static_cast<std::uint32_t>(&t - triangles.triangles.data()));
+        const Corners& corners = triangles.triangles[t];
+        edges_.push_back({ascending(corners[k], corners[(k + 1) % 3]), t});
       }
+    std::ranges::sort(edges_);
   }
 
   /// Whether what the triangles cover ends at the edges of the face: then it is all of the face.
   bool is_whole() const {
-    return rim_.size() == boundary_.size() && std::ranges::all_of(boundary_, [&](const auto& line) {
-             return rim_.contains(ascending(line.first[0], line.first[1]));
-           });
+    std::size_t ends = 0;
+    for (auto edge = edges_.begin(); edge != edges_.end();) {
+      const auto next =
+          std::ranges::find_if(edge, edges_.end(), [&](const auto& e) { return e.first != edge->first; });
+      if ((next - edge) % 2 == 1) {
+        const auto& [a, b] = edge->first;
+        if (!boundary_.contains({a, b}) && !boundary_.contains({b, a})) return false;
+        ++ends;
+      }
+      edge = next;
+    }
+    return ends == boundary_.size();
   }
 
   void append() {
@@ -84,7 +88,10 @@ class Cover {
     std::uint32_t nearest = t;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k)
-      for (const std::uint32_t other : beside_[ascending(corners[k], corners[(k + 1) % 3])]) {
+      for (const auto& [edge, other] :
+           std::ranges::equal_range(edges_, ascending(corners[k], corners[(k + 1) % 3]), {},
+                                    &std::pair<NodePair, std::uint32_t>::first)) {
+        if (!has_area(triangles_.triangles[other])) continue;
         const auto& [a, b, c] = triangles_.triangles[other];
         const double distance =
             PreparedTriangle(triangles_.places[a], triangles_.places[b], triangles_.places[c])
@@ -158,8 +165,7 @@ class Cover {
   const Boundary& boundary_;
   FacePatches& patches_;
   std::uint32_t first_flat_;
-  std::set<std::array<std::uint32_t, 2>> rim_;
-  std::map<std::array<std::uint32_t, 2>, std::vector<std::uint32_t>> beside_;  ///< triangles with area
+  std::vector<std::pair<NodePair, std::uint32_t>> edges_;  ///< each with a triangle, sorted
 };
 
 }  // namespace
@@ -173,12 +179,16 @@ void append_face(const TopoDS_Face& face, const handle<Poly_Triangulation>& tria
   for (const Corners& t : triangles.triangles)
     surface.flats.push_back(
         {{triangles.places[t[0]], triangles.places[t[1]], triangles.places[t[2]]}, index});
+  const auto at_node = [&](std::uint32_t node) {
+    return Parameters{triangles.parameters[node].X(), triangles.parameters[node].Y()};
+  };
   try {
     FacePatches patches(BRep_Tool::Surface(face), box_of(triangles), surface);
     made.kind = patches.kind();
     made.without_bound = patches.without_bound();
     if (made.without_bound.empty()) {
-      const Boundary boundary = boundary_of(face, triangulation, location, patches, fine);
+      Boundary boundary = boundary_of(face, triangulation, location, patches, fine);
+      for (const auto& [from, to, node] : triangles.cuts) cut(boundary, {from, to}, node, at_node(node));
       for (const auto& [nodes, line] : boundary) made.tolerance = std::max(made.tolerance, line.tolerance);
       Cover cover(triangles, boundary, patches, first_flat);
       if (cover.is_whole())

@@ -25,6 +25,7 @@
 #include <fstream>
 
 #include "cad/diagnose/counted.hpp"
+#include "cad/opencascade/loose_edges.hpp"
 #include "cad/opencascade/read_shapes.hpp"
 #include "cad/opencascade/sewing.hpp"
 #include "cad/opencascade/tessellate.hpp"
@@ -308,7 +309,7 @@ void tessellate(const Parts& parts, double deflection, double diagonal, bool tru
 }
 
 ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double deflection,
-                 bool true_surface) {
+                 const std::optional<SpheresInside>& inside) {
   ReadAttempt result;
   Parts parts;
   result.failure = format == ShapeFormat::step   ? read_step(file, parts)
@@ -340,7 +341,7 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
     return result;
   }
   if (!(deflection > 0)) deflection = default_deflection * diagonal;
-  if (true_surface) deflection = std::max(deflection, smallest_deflection * diagonal);
+  if (inside) deflection = std::max(deflection, smallest_deflection * diagonal);
   if (deflection < smallest_deflection * diagonal) {
     const std::string_view unit = parts.facts.unit ? " mm" : "";
     result.failure = fmt::format(
@@ -350,9 +351,17 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
     return result;
   }
   sew_faces(parts, diagonal);
+  // Before anything is healed or meshed, which both fail in their own words where tolerances are large.
+  if (inside)
+    result.failure =
+        known_too_loosely(together(parts), inside->smallest_radius, parts.facts.unit ? " mm" : "");
+  if (!result.ok()) {
+    result.failed_option = "true_surface";
+    return result;
+  }
   heal(parts);
   result.facts = std::move(parts.facts);
-  tessellate(parts, deflection, diagonal, true_surface, result);
+  tessellate(parts, deflection, diagonal, inside.has_value(), result);
   if (!std::all_of(result.soup.points.begin(), result.soup.points.end(),
                    [](const Vector<3>& p) { return p.allFinite(); }))
     result.failure = "a coordinate is not finite";
@@ -363,9 +372,10 @@ ReadAttempt read(const std::filesystem::path& file, ShapeFormat format, double d
 }  // namespace bernal::cad
 
 void bernal_read_shapes(const std::filesystem::path& file, bernal::cad::ShapeFormat format, double deflection,
-                        bool true_surface, bernal::cad::ReadAttempt& result) {
+                        const std::optional<bernal::cad::SpheresInside>& inside,
+                        bernal::cad::ReadAttempt& result) {
   try {
-    result = bernal::cad::read(file, format, deflection, true_surface);
+    result = bernal::cad::read(file, format, deflection, inside);
   } catch (const Standard_Failure& failure) {
     const std::string_view phrases = failure.GetMessageString();
     result.failure = fmt::format("OpenCASCADE gives up: {}", phrases.empty() ? "no reason given" : phrases);

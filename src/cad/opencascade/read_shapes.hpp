@@ -12,4 +12,5 @@ enum class ShapeFormat : std::uint8_t { step, iges, brep };
 
 /// What the module of OpenCASCADE answers: see `read_with_opencascade`, which loads it.
 extern "C" void bernal_read_shapes(const std::filesystem::path& file, bernal::cad::ShapeFormat format,
-                                   double deflection, bool true_surface, bernal::cad::ReadAttempt& result);
+                                   double deflection, const std::optional<bernal::cad::SpheresInside>& inside,
+                                   bernal::cad::ReadAttempt& result);

@@ -3,6 +3,7 @@
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
+#include <Geom2d_Line.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
@@ -18,6 +19,7 @@
 
 #include "cad/opencascade/face_triangles.hpp"
 #include "cad/opencascade/make_true_surface.hpp"
+#include "cad/opencascade/refine_evenly.hpp"
 
 namespace bernal::cad {
 namespace {
@@ -29,6 +31,11 @@ constexpr double angular_deflection = 0.5;
 /// off on twisted ruled surfaces. Faces are refined, edges are not: if more than the deflection remains, the
 /// mesher is run again with a smaller one, up to this often.
 constexpr int attempts = 3;
+
+/// Where formulas come with the triangles, the mesher makes those that edges need, over deflections.
+constexpr double coarse_interior = 1e4;
+/// How far what is between two nodes may be off, over deflections.
+constexpr double most_bend = 1.05;
 
 /// The triangulation of one face, with nodes numbered through all faces of the shape.
 struct FacePatch {
@@ -111,11 +118,12 @@ struct Attempt {
   PolygonSoup soup;
   Tessellated made;
   TrueSurface surface = {};
+  double off = 0;  ///< as measured: the surface from the triangles
 };
 
 /// What is wanted of a tessellation.
 struct Wanted {
-  double deflection;
+  double deflection, of_edges;
   bool with_surface;
   double fine;
 };
@@ -136,9 +144,8 @@ std::vector<FacePatch> patches_of(const TopoDS_Shape& shape, std::size_t& untria
   return patches;
 }
 
-/// The triangles of a patch with the face's orientation, refined.
-FaceTriangles triangles_of(const FacePatch& patch, const std::vector<Vector<3>>& place, Stitcher& stitcher,
-                           const BRepAdaptor_Surface& surface, double deflection) {
+/// The triangles of a patch with the face's orientation.
+FaceTriangles triangles_of(const FacePatch& patch, const std::vector<Vector<3>>& place, Stitcher& stitcher) {
   FaceTriangles face;
   for (int k = 1; k <= patch.triangulation->NbNodes(); ++k) {
     face.places.push_back(place[stitcher.root(patch.first + std::uint32_t(k) - 1)]);
@@ -151,20 +158,72 @@ FaceTriangles triangles_of(const FacePatch& patch, const std::vector<Vector<3>>&
     auto& corners = face.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) corners[k] = std::uint32_t(corner[k]) - 1;
   }
-  refine(surface, deflection, face);
   return face;
 }
 
-Attempt tessellate(const TopoDS_Shape& shape, const Wanted& wanted) {
-  const double deflection = wanted.deflection;
+/// The edges that are a point in space, and a straight line in the plane of parameters, by their nodes.
+std::vector<NodePair> poles_of(const FacePatch& patch) {
+  std::vector<NodePair> poles;
+  for (TopExp_Explorer at(patch.face, TopAbs_EDGE); at.More(); at.Next()) {
+    const TopoDS_Edge edge = TopoDS::Edge(at.Current());
+    if (!BRep_Tool::Degenerated(edge)) continue;
+    const auto polygon = BRep_Tool::PolygonOnTriangulation(edge, patch.triangulation, patch.location);
+    double first = 0, last = 0;
+    const auto curve = BRep_Tool::CurveOnSurface(edge, patch.face, first, last);
+    if (polygon.IsNull() || opencascade::handle<Geom2d_Line>::DownCast(curve).IsNull()) continue;
+    for (int k = 1; k < polygon->NbNodes(); ++k)
+      poles.push_back({std::uint32_t(polygon->Node(k)) - 1, std::uint32_t(polygon->Node(k + 1)) - 1});
+  }
+  return poles;
+}
+
+/// Whether all faces are parts of planes, cylinders, cones, balls and tori. On others triangles may fold
+/// where few become many.
+bool is_elementary(const TopoDS_Shape& shape) {
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
+    if (BRepAdaptor_Surface(TopoDS::Face(face.Current()), false).GetType() > GeomAbs_Torus) return false;
+  return true;
+}
+
+void mesh(const TopoDS_Shape& shape, const Wanted& wanted) {
   IMeshTools_Parameters parameters;
-  parameters.Deflection = deflection;
   parameters.Angle = angular_deflection;
   parameters.Relative = false;
+  parameters.Deflection = wanted.of_edges;
+  if (wanted.with_surface && is_elementary(shape)) {  // the few nodes inside of faces that it needs
+    parameters.DeflectionInterior = coarse_interior * wanted.deflection;
+    parameters.AngleInterior = 1;
+  }
   const BRepMesh_IncrementalMesh done(shape, parameters);
+}
 
+/// How far faces are off at most where their edges have the same parameters, in the middle between two nodes
+/// of an edge.
+double off_at_edges(const TopoDS_Shape& shape) {
+  double most = 0;
+  std::size_t untriangulated = 0;
+  for (const FacePatch& patch : patches_of(shape, untriangulated)) {
+    const BRepAdaptor_Surface surface(patch.face, false);
+    const auto place_at = [&](const gp_XY& at) { return vector_of(surface.Value(at.X(), at.Y())); };
+    for (TopExp_Explorer edge(patch.face, TopAbs_EDGE); edge.More(); edge.Next()) {
+      const auto polygon = BRep_Tool::PolygonOnTriangulation(TopoDS::Edge(edge.Current()),
+                                                             patch.triangulation, patch.location);
+      if (polygon.IsNull()) continue;
+      for (int k = 1; k < polygon->NbNodes(); ++k) {
+        const gp_XY from = patch.triangulation->UVNode(polygon->Node(k)).XY(),
+                    to = patch.triangulation->UVNode(polygon->Node(k + 1)).XY();
+        most = std::max(most, (place_at((from + to) * 0.5) - 0.5 * (place_at(from) + place_at(to))).norm());
+      }
+    }
+  }
+  return most;
+}
+
+/// Of what the mesher has made.
+Attempt tessellate(const TopoDS_Shape& shape, const Wanted& wanted) {
+  const double deflection = wanted.deflection;
   Attempt result;
-  auto& [soup, made, true_surface] = result;
+  auto& [soup, made, true_surface, off] = result;
   const std::vector<FacePatch> patches = patches_of(shape, made.untriangulated);
   std::vector<Vector<3>> place;
   for (const FacePatch& patch : patches)
@@ -181,14 +240,21 @@ Attempt tessellate(const TopoDS_Shape& shape, const Wanted& wanted) {
   for (const FacePatch& patch : patches) {
     const BRepAdaptor_Surface surface(patch.face, false);
     const std::size_t before = soup.polygons.size();
-    const FaceTriangles face = triangles_of(patch, place, stitcher, surface, deflection);
-    if (wanted.with_surface)
+    FaceTriangles face = triangles_of(patch, place, stitcher);
+    if (wanted.with_surface) {
+      off = std::max(off, refine_evenly(surface, poles_of(patch), most_bend * deflection, face));
       append_face(patch.face, patch.triangulation, patch.location, face, wanted.fine, true_surface);
+    } else {
+      refine(surface, deflection, face);
+    }
     const auto shared = static_cast<std::uint32_t>(patch.triangulation->NbNodes());
     std::vector<std::uint32_t> own(face.places.size() - shared,
                                    unnumbered);  // for the nodes that refining added
     for (const FaceTriangles::Corners& corners : face.triangles) {
       std::array<std::uint32_t, 3> node = corners;
+      for (std::uint32_t& n : node)
+        if (const auto pole = face.at_pole.find(n); pole != face.at_pole.end()) n = pole->second;
+      const std::array<std::uint32_t, 3> local = node;
       for (std::uint32_t& n : node)
         if (n < shared)
           n = stitcher.root(patch.first + n);
@@ -197,10 +263,11 @@ Attempt tessellate(const TopoDS_Shape& shape, const Wanted& wanted) {
       if (node[0] == node[1] || node[1] == node[2] || node[2] == node[0]) continue;
       std::vector<std::uint32_t>& polygon = soup.polygons.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) {
-        std::uint32_t& point = corners[k] < shared ? number[node[k]] : own[corners[k] - shared];
-        if (point == unnumbered) point = add(face.places[corners[k]]);
+        std::uint32_t& point = local[k] < shared ? number[node[k]] : own[local[k] - shared];
+        if (point == unnumbered) point = add(face.places[local[k]]);
         polygon.push_back(point);
       }
+      if (wanted.with_surface) continue;  // more than that is known of it
       const SurfaceDeviation deviation = deviation_of(surface, face, corners);
       made.deviation.outside = std::max(made.deviation.outside, deviation.outside);
       made.deviation.inside = std::max(made.deviation.inside, deviation.inside);
@@ -208,11 +275,8 @@ Attempt tessellate(const TopoDS_Shape& shape, const Wanted& wanted) {
     made.without_area += soup.polygons.size() == before;
   }
   if (signed_volume(soup) < 0) std::swap(made.deviation.outside, made.deviation.inside);
+  if (!wanted.with_surface) off = std::max(made.deviation.outside, made.deviation.inside);
   return result;
-}
-
-double worst(const Attempt& attempt) {
-  return std::max(attempt.made.deviation.outside, attempt.made.deviation.inside);
 }
 
 void append(TrueSurface& surface, TrueSurface&& more) {
@@ -235,14 +299,29 @@ void append(TrueSurface& surface, TrueSurface&& more) {
 
 Tessellated append_tessellation(const TopoDS_Shape& shape, double deflection, PolygonSoup& soup,
                                 TrueSurface* surface, double fine) {
-  Attempt best = tessellate(shape, {deflection, surface != nullptr, fine});
   double finer = deflection;
-  for (int k = 0; k < attempts && worst(best) > deflection; ++k) {
-    finer *= std::clamp(0.9 * deflection / worst(best), 0.3, 0.9);
-    Attempt next = tessellate(shape, {finer, surface != nullptr, fine});
-    const bool better = worst(next) < 0.9 * worst(best);
-    if (worst(next) < worst(best)) best = std::move(next);
-    if (!better) break;
+  Attempt best;
+  if (surface) {  // inner edges are split as often as it takes: only those of faces need another attempt
+    for (int k = 0;; ++k) {
+      mesh(shape, {deflection, finer, true, fine});
+      const double off = off_at_edges(shape), most = most_bend * deflection;
+      if (off <= most || k == attempts) break;
+      finer *= std::clamp(0.9 * most / off, 0.3, 0.9);
+    }
+    best = tessellate(shape, {deflection, finer, true, fine});
+  } else {
+    const auto attempt = [&](double wanted) {
+      mesh(shape, {wanted, wanted, false, fine});
+      return tessellate(shape, {wanted, wanted, false, fine});
+    };
+    best = attempt(deflection);
+    for (int k = 0; k < attempts && best.off > deflection; ++k) {
+      finer *= std::clamp(0.9 * deflection / best.off, 0.3, 0.9);
+      Attempt next = attempt(finer);
+      const bool better = next.off < 0.9 * best.off;
+      if (next.off < best.off) best = std::move(next);
+      if (!better) break;
+    }
   }
   const auto first = static_cast<std::uint32_t>(soup.points.size());
   soup.points.insert(soup.points.end(), best.soup.points.begin(), best.soup.points.end());

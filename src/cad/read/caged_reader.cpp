@@ -29,7 +29,9 @@ ReadAttempt read_in_cage(std::string_view reader, const CageLimits& limits,
         attempt = read();
         if (attempt.failure.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
       },
-      [&](Archive& a) { a(attempt.soup, attempt.failure, attempt.facts, attempt.surface); });
+      [&](Archive& a) {
+        a(attempt.soup, attempt.failure, attempt.facts, attempt.failed_option, attempt.surface);
+      });
   if (!befell.empty()) return {.failure = std::move(befell)};
   return attempt;
 }

@@ -46,12 +46,19 @@ struct FileFacts {
   std::vector<std::string> notes = {};             ///< what else a user should know, one phrase each
 };
 
+/// What is to lie inside of a surface itself, in units of the coordinates.
+struct SpheresInside {
+  double smallest_radius = 0;  ///< 0: unknown
+};
+
 /// The result of a reader: a soup, or the reason for its failure. Coordinates are those of the file: neither
 /// scaled to another unit nor turned.
 struct ReadAttempt {
   PolygonSoup soup = {};
   std::string failure = {};  ///< one line; empty if the soup is good
   FileFacts facts = {};
+  /// The option of the scene that the failure is about, if it is about one.
+  std::string failed_option = {};
   TrueSurface surface = {};  ///< with the triangles of the soup as `flats`, where it was asked for
   std::string reader = {};   ///< name of the reader and its precision, one phrase
 
@@ -95,9 +102,10 @@ bool opencascade_reads(const std::filesystem::path& file);
 /// The surfaces of STEP, IGES and BREP as triangles at most `deflection` away from them; a thousandth of the
 /// part's diagonal if that is not positive. STEP and IGES are converted to millimetres, and `deflection` is
 /// in these (a BREP has no unit). Solids are placed by the assembly; surfaces outside solids are sewn. In a
-/// child process. With `true_surface` the formulas of the faces come with them, and a deflection that is too
-/// fine for the mesher is made larger.
+/// child process. With `inside` the formulas of the faces come with them, a deflection that is too fine for
+/// the mesher is made larger, and edges and corners that are known to less than the smallest radius only are
+/// refused before anything is made of them.
 ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection,
-                                  bool true_surface = false);
+                                  const std::optional<SpheresInside>& inside = {});
 
 }  // namespace bernal::cad

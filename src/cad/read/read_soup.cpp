@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "bernal/cad/read_mesh.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "cad/read/files_of_part.hpp"
@@ -67,7 +68,7 @@ void make_plain(ReadAttempt& read) {
 }
 
 ReadAttempt read_by_extension(const std::filesystem::path& file, double deflection, double metres,
-                              bool true_surface) {
+                              std::optional<SpheresInside> inside) {
   const std::string extension = extension_of(file);
   if (extension == ".stl") return read_stl(file);
   if (extension == ".obj") return read_obj(file);
@@ -77,11 +78,15 @@ ReadAttempt read_by_extension(const std::filesystem::path& file, double deflecti
   if (!opencascade_reads(file)) return read_with_assimp(file);
   constexpr double millimetre = 1e-3;
   const bool has_unit = !extension.starts_with(".br");
-  return read_with_opencascade(file, deflection / (has_unit ? millimetre : metres), true_surface);
+  const double unit = has_unit ? millimetre : metres;
+  if (inside) inside->smallest_radius /= unit;
+  return read_with_opencascade(file, deflection / unit, inside);
 }
 
 /// What was read, once it is known to be a surface.
 ReadAttempt sound(ReadAttempt read, const std::filesystem::path& file) {
+  if (!read.failed_option.empty())
+    throw OptionError(read.failed_option, fmt::format("{}: {}", file.filename().string(), read.failure));
   if (!read.ok()) refuse_unread(file, read.failure);
   if (read.soup.polygons.empty()) refuse(file, "holds no faces; export the surface, not points or curves");
   if (const double farthest = largest_coordinate(read.soup); !(farthest <= most_coordinate))
@@ -113,7 +118,7 @@ void note_other_files(const std::filesystem::path& file, ReadAttempt& read) {
 }  // namespace
 
 ReadAttempt read_soup(const std::filesystem::path& file, double deflection, double metres,
-                      bool true_surface) {
+                      const std::optional<SpheresInside>& inside) {
   const FileKind kind = kind_of_file(file);
   if (kind == FileKind::missing) refuse(file, "no such file");
   if (kind == FileKind::folder) refuse(file, "is a folder, not a file");
@@ -121,7 +126,7 @@ ReadAttempt read_soup(const std::filesystem::path& file, double deflection, doub
   std::error_code error;
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "the file is empty");
   if (const std::string other = why_no_mesh(file); !other.empty()) refuse(file, other);
-  ReadAttempt read = sound(read_by_extension(file, deflection, metres > 0 ? metres : 1, true_surface), file);
+  ReadAttempt read = sound(read_by_extension(file, deflection, metres > 0 ? metres : 1, inside), file);
   note_other_files(file, read);
   return read;
 }

@@ -27,13 +27,14 @@ std::optional<ShapeFormat> shape_format(const std::filesystem::path& file) {
 
 bool opencascade_reads(const std::filesystem::path& file) { return shape_format(file).has_value(); }
 
-ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection, bool true_surface) {
+ReadAttempt read_with_opencascade(const std::filesystem::path& file, double deflection,
+                                  const std::optional<SpheresInside>& inside) {
   const CageLimits limits = limits_for_shapes(std::filesystem::file_size(file), deflection > 0);
   ReadAttempt read = read_in_cage("OpenCASCADE", limits, [&] {
     ReadAttempt result;
     if (void* function = opencascade_function("bernal_read_shapes")) {
       const auto reader = reinterpret_cast<decltype(&bernal_read_shapes)>(function);
-      reader(file, shape_format(file).value(), deflection, true_surface, result);
+      reader(file, shape_format(file).value(), deflection, inside, result);
     } else {
       result.failure = "this bernal runs without OpenCASCADE, which reads STEP, IGES and BREP; " +
                        opencascade_remedy() + ", or export STL";

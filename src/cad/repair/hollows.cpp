@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "bernal/core/error.hpp"
@@ -23,6 +24,40 @@ std::optional<Mesh> hull_of_faces(const Mesh& mesh, const std::vector<std::uint3
   for (const std::uint32_t t : faces)
     for (const std::uint32_t v : mesh.triangles[t]) points.push_back(mesh.vertices[v]);
   return convex_hull_of(points);
+}
+
+/// The volume of a polytope around the faces' corners, by a few per cent larger than that of their hull; the
+/// hull itself takes minutes where as good as all of many corners are on it, as those of a ball. Infinite if
+/// they are nearly coplanar.
+double volume_around(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {
+  constexpr int directions = 256;
+  Mesh piece{mesh.vertices, {}};
+  for (const std::uint32_t t : faces) piece.triangles.push_back(mesh.triangles[t]);
+  drop_unused_vertices(piece);
+  const Bounds<3> bounds = bounds_of(piece);
+  const Vector<3> middle = bounds.center();
+  std::vector<Vector<3>> normals(directions), corners;
+  std::vector<double> reach(directions, 0);
+  const double turn = std::numbers::pi * (3 - std::sqrt(5.0));  // even on the sphere
+  for (int k = 0; k < directions; ++k) {
+    const double z = 1 - (2 * k + 1.0) / directions, r = std::sqrt(1 - z * z);
+    normals[k] = {r * std::cos(turn * k), r * std::sin(turn * k), z};
+  }
+  parallel_for(normals.size(), [&](std::size_t k) {
+    for (const Vector<3>& v : piece.vertices) reach[k] = std::max(reach[k], normals[k].dot(v - middle));
+  });
+  if (!(std::ranges::min(reach) > 1e-6 * bounds.diagonal())) return std::numeric_limits<double>::infinity();
+  for (int k = 0; k < directions; ++k) normals[k] /= reach[k];
+  // A face of the hull of the poles of planes is a corner of what is between the planes.
+  const std::optional<Mesh> poles = convex_hull_of(normals);
+  if (!poles) return std::numeric_limits<double>::infinity();
+  for (const FaceCorners& t : poles->triangles) {
+    const Vector<3>&a = poles->vertices[t[0]], &b = poles->vertices[t[1]], &c = poles->vertices[t[2]];
+    const Vector<3> normal = (b - a).cross(c - a);
+    corners.push_back(normal / normal.dot(a));
+  }
+  const std::optional<Mesh> around = convex_hull_of(corners);
+  return around ? std::abs(signed_volume(*around)) : std::numeric_limits<double>::infinity();
 }
 
 /// A solid with its pieces oriented outwards, and their sides.
@@ -75,11 +110,12 @@ class Sides {
 
   /// Uses the smallest sufficient reach.
   std::vector<Hollow> hollows_of_piece(std::uint32_t piece, double least) const {
+    const double own = pieces_.volumes()[piece];
+    if (least > 0 && volume_around(mesh_, faces_[piece]) - own < least * own) return {};
     const std::optional<Mesh> hull = hull_of_faces(mesh_, faces_[piece]);
     if (!hull) return {};
     const TriangleTree tree(*hull);
-    const double diagonal = bounds_of(*hull).diagonal();
-    const double own = pieces_.volumes()[piece], air = std::abs(signed_volume(*hull)) - own;
+    const double diagonal = bounds_of(*hull).diagonal(), air = std::abs(signed_volume(*hull)) - own;
     if (air < least * own) return {};
     std::vector<std::vector<Hollow>> found;  // by reach, the heaviest first
     double largest = 0, least_folded = 1;
