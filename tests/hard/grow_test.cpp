@@ -57,6 +57,15 @@ TEST(Growth, JamsInEveryDimensionThatItKnows) {
   }
 }
 
+/// What fast growth locks at its pressure, at 0.58, slower growth goes on to pack.
+TEST(Growth, JamsHoweverFastItBegan) {
+  for (const double delta : {1.0, 4.0}) {
+    const Packing packing = grown(scene("", "count = 300\nradius = 1.0", fmt::format("delta = {}", delta)));
+    EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+    EXPECT_GT(packing.packing_fraction(), 0.625) << delta;
+  }
+}
+
 TEST(Growth, KeepsTheDrawnRadiiToTheBit) {
   const std::string spheres =
       "count = 300\nradius = { distribution = \"lognormal\", median = 0.7, sigma = 0.4 }";
