@@ -11,6 +11,7 @@
 #include "jam/few_energy.hpp"
 #include "jam/lattice_places.hpp"
 #include "jam/quasi_newton.hpp"
+#include "work/room.hpp"
 
 namespace bernal {
 namespace {
@@ -49,6 +50,15 @@ class FewSearch {
         of_one_size_(std::ranges::all_of(radii, [&](double r) { return r == radii.front(); })) {}
 
   FewPacked run() {
+    if (energy_.size() == 1) {
+      Eigen::VectorXd point = at({largest_room(energy_.container()).place});
+      look_at(point, relaxed(point, false));
+      return std::move(found_);
+    }
+    if (auto places = grid_places(energy_.container(), energy_.size())) {
+      Eigen::VectorXd point = among(std::move(*places), 0);
+      look_at(point, relaxed(point, false));
+    }
     for (std::uint64_t start = 0; !over(); ++start) {
       Eigen::VectorXd point = start % 2 == 0 ? at_random() : on_lattice();
       const double size = relaxed(point, start % 2 == 0);
@@ -88,25 +98,31 @@ class FewSearch {
     return p;
   }
 
-  Eigen::VectorXd at_random() {
+  Eigen::VectorXd at(const std::vector<Vector<3>>& places) const {
     Eigen::VectorXd point(energy_.unknowns());
-    for (std::size_t i = 0; i < energy_.size(); ++i) energy_.set_center(point, i, place());
+    for (std::size_t i = 0; i < energy_.size(); ++i) energy_.set_center(point, i, places[i]);
     energy_.set_size(point, energy_.expected_size());
     return point;
   }
 
-  /// Spheres of several sizes take its places as chance has it.
+  Eigen::VectorXd at_random() {
+    std::vector<Vector<3>> places(energy_.size());
+    for (Vector<3>& p : places) p = place();
+    return at(places);
+  }
+
   Eigen::VectorXd on_lattice() {
     constexpr double jitter = 1e-3;
     const double r = energy_.expected_size() * mean_radius();
     auto sites = lattice_places(energy_.container(), energy_.size(), r, random_);
-    if (!sites) return at_random();
-    if (!of_one_size_) shuffle(*sites);
-    Eigen::VectorXd point(energy_.unknowns());
-    for (std::size_t i = 0; i < energy_.size(); ++i)
-      energy_.set_center(point, i, (*sites)[i] + jitter * r * random_way());
-    energy_.set_size(point, energy_.expected_size());
-    return point;
+    return sites ? among(std::move(*sites), jitter * r) : at_random();
+  }
+
+  /// Spheres of several sizes take these places as chance has it.
+  Eigen::VectorXd among(std::vector<Vector<3>> places, double jitter) {
+    if (!of_one_size_) shuffle(places);
+    for (Vector<3>& p : places) p += jitter * random_way();
+    return at(places);
   }
 
   double mean_radius() const {
@@ -262,7 +278,22 @@ class FewSearch {
 }  // namespace
 
 bool are_few(std::size_t count, const Container& container) {
-  return count >= 2 && count <= most_few && !container.boundary().repeats();
+  return count >= 1 && count <= most_few && !container.boundary().repeats();
+}
+
+double gap_of_few(const Container& container) {
+  constexpr double roundings = 32;
+  return roundings * container.resolution();
+}
+
+double seconds_of_few(double count) {
+  constexpr double of_five = 0.03, power = 2.4, most = 4;
+  return std::min(most, of_five * std::pow(count / 5, power));
+}
+
+double effort_of_one_more(double count) {
+  constexpr double effort = 0.125, of_count = 16;
+  return effort * std::min(1.0, of_count / count);
 }
 
 /// By proportions that are rounded, so that sizes that are all multiplied by one factor go the same way.
@@ -274,6 +305,7 @@ FewPacked pack_few(const std::vector<double>& radii, const Container& container,
     proportions.push_back(std::ldexp(std::round(std::ldexp(r / largest, bits)), -bits));
   FewWish in_proportion = wish;
   in_proportion.enough *= largest;
+  if (wish.tell) in_proportion.tell = [&](double done, double size) { wish.tell(done, size / largest); };
   FewPacked packed = FewSearch(proportions, container, places, in_proportion).run();
   packed.size /= largest;
   return packed;
