@@ -49,12 +49,14 @@ struct FewPacked {
 
 /// Places for few spheres at which all radii may be as large as possible by one factor, see `FewEnergy`.
 ///
-/// From the widest simple cubic lattice along the axes, and then from random places and from lattices by
-/// turns, the spheres relax under a load, and then hop from minimum to minimum: all or those of a region are shaken, or some, the most or the least squeezed or any, are put into
-/// holes, and what is not looser stays (Grosso, Jamali, Locatelli & Schoen, J. Global Optim. 47, 63 (2010)).
-/// What may be the tightest yet relaxes under a tenth of the load, and if it still may be, its contacts are
-/// closed (`close_few`), to 1e-13 of the radii: the tightest of these is the result. One sphere begins in the
-/// roomiest place that is known (`largest_room`), and that is all.
+/// From the widest simple cubic lattice along the axes, and then from random places, from symmetric ones and
+/// from lattices by turns, the spheres relax under a load; the tightest of these, and then others, hop from
+/// minimum to minimum: all or those of a region are shaken, or some, the most or the least squeezed or any,
+/// are put into holes, and what is not looser stays (Grosso, Jamali, Locatelli & Schoen, J. Global Optim. 47,
+/// 63 (2010)). What may be the tightest yet relaxes under a tenth of the load, and if it still may be and
+/// nothing near is tighter, its contacts are closed (`close_few`), to 1e-13 of the radii: the tightest of
+/// these is the result. One sphere begins in the roomiest place that is known (`largest_room`), and that is
+/// all.
 ///
 /// One thread; the same bits each time, whatever the number of threads, and the same way whatever `enough`
 /// is. A search that is not to be won is given up early: where the tightest after a quarter of it is less

@@ -351,7 +351,9 @@ static Plan finished(Plan plan) {
 
 Plan made_plan(const Scene& stated, const PlaceOfPlan* place) { return finished(begun_plan(stated, place)); }
 
-bool all_may_fit(const Plan& plan) { return needs_room(plan) ? may_fit(plan_with_room(plan)) : may_fit(plan); }
+bool all_may_fit(const Plan& plan) {
+  return needs_room(plan) ? may_fit(plan_with_room(plan)) : may_fit(plan);
+}
 
 std::optional<Plan> made_plan_where_all_fit(const Scene& stated) {
   Plan plan = begun_plan(stated);

@@ -44,9 +44,8 @@ Plan plan_of_largest(const Scene& stated) {
                            .seconds = seconds_of_few(static_cast<double>(*scene.target.count))});
   else
     plan->items.push_back({.name = "search",
-                           .what =
-                               "the same for larger and larger spheres, and for sizes in between, from "
-                               "several beginnings each, until the largest are known to 1e-4",
+                           .what = "the same for larger and larger spheres, and for sizes in between, from "
+                                   "several beginnings each, until the largest are known to 1e-4",
                            .cost = "some 100 runs",
                            .seconds = runs * (dear * plan->expected_seconds + least_seconds)});
   plan->expected_seconds += plan->items.back().seconds;

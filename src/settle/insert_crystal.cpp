@@ -168,9 +168,8 @@ void complete_insert(Insert& insert, Scene& scene, const schema::Section& sectio
 std::vector<Vector<3>> crystal_sites(const Insert& options, const SpheresInBed& in_bed,
                                      const Monitor& monitor) {
   const double r = in_bed.task.frame.scale * in_bed.supply->largest();
-  return sites_asked(options, ground_of(in_bed), r, [&](const Crystal& crystal) {
-    return free_sites(in_bed, crystal, r, monitor);
-  });
+  return sites_asked(options, ground_of(in_bed), r,
+                     [&](const Crystal& crystal) { return free_sites(in_bed, crystal, r, monitor); });
 }
 
 StageEnd insert_crystal(const Insert& options, SpheresInBed& in_bed, Reporter& report) {

@@ -289,7 +289,6 @@ StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter
   StageEnd end = StageEnd::converged;
   const Resumable part(report, "relax in container", [&](Archive& a) { a(step, end); });
   const auto relaxed = [&] {
-    if (!in_bed.task.few_places.empty()) return place_few(StageEnd::full, in_bed, report);
     if (step == Step::begin) {
       // What fits only touching the walls would be pushed off its place; the others come around it.
       if (SnugPlaces(in_bed, report).only_some_touch()) return insert_largest_first(in_bed, report);
