@@ -351,7 +351,7 @@ double seconds_of_few(double count) {
 }
 
 double effort_of_one_more(double count) {
-  constexpr double effort = 0.125, of_count = 16;
+  constexpr double effort = 0.125, of_count = 40;
   return effort * std::min(1.0, of_count / count);
 }
 

@@ -25,7 +25,7 @@ double gap_of_few(const Container& container);
 
 /// What a whole search takes, on one thread; where walls are many pieces some times as much.
 double seconds_of_few(double count);
-/// Of a search, what each sphere is worth that nobody has asked for by number: some 0.2 s at most.
+/// Of a search, what each sphere is worth that nobody has asked for by number: some 0.3 s at most.
 double effort_of_one_more(double count);
 
 /// How long it is searched, and for whom.

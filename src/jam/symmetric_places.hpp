@@ -10,11 +10,12 @@
 namespace bernal {
 
 /// So many random places that a group of rotations and reflections about the container's middle maps onto
-/// each other, as a start for spheres of about that radius: one of the crystals' point groups along the axes
-/// that the container has too, as chance has it. Of a place the images come with it; images nearer than a
-/// diameter are one, on the axis or mirror between them. Many of the tightest arrangements in balls and cubes
-/// have such a group: in a ball those of 38, 61 and 63. Nothing where the container does not have the group,
-/// and where orbits do not add up to so many. Cost: that of some hundred clearances.
+/// each other, as a start for spheres of about that radius: a group with axes along those of space and, at
+/// times, their diagonals, as chance has it, which the container has too. Of a place the images come with it;
+/// a place whose images are nearer than a diameter moves to their middle, as a rule on an axis or a mirror.
+/// Many of the tightest arrangements in balls and cubes have such a group: in a ball those of 38, 61 and 63.
+/// Nothing where the container does not have the group, and where orbits do not add up to so many. Cost: that
+/// of some hundred clearances.
 std::optional<std::vector<Vector<3>>> symmetric_places(const Container& container, const Places& places,
                                                        std::size_t count, double radius, Random& random);
 

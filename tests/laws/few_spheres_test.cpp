@@ -20,6 +20,7 @@
 #include "jam/few_spheres.hpp"
 #include "jam/lattice_places.hpp"
 #include "jam/quasi_newton.hpp"
+#include "jam/symmetric_places.hpp"
 
 namespace bernal {
 namespace few_spheres_test {
@@ -340,6 +341,33 @@ TEST(LatticePlaces, AreSoManyInside) {
         }
       }
   }
+}
+
+/// No two in one place; and none in a triangle without symmetry.
+TEST(SymmetricPlaces, AreSoManyInsideOfWhatHasTheirSymmetry) {
+  Random random(3, stream(Stream::test));
+  for (const Domain& domain : {Domain(Sphere{}), Domain(Cylinder{}), Domain(Box{})}) {
+    const auto container = made(domain);
+    const Places in_container(*container);
+    for (const std::size_t count : {5u, 38u, 63u}) {
+      int found = 0;
+      const double r = std::cbrt(0.1 * container->volume() / static_cast<double>(count));
+      for (int k = 0; k < 40; ++k) {
+        const auto places = symmetric_places(*container, in_container, count, r, random);
+        if (!places) continue;
+        ++found;
+        ASSERT_EQ(places->size(), count);
+        for (std::size_t i = 0; i < count; ++i) {
+          EXPECT_GT(container->clearance((*places)[i]), 0);
+          for (std::size_t j = 0; j < i; ++j) EXPECT_GT(((*places)[i] - (*places)[j]).norm(), 0.1 * r);
+        }
+      }
+      EXPECT_GT(found, 0) << count;
+    }
+  }
+  const auto triangle = made(Polygon{{{{0, 0}, {4, 0}, {0, 3}}}});
+  const Places in_triangle(*triangle);
+  for (int k = 0; k < 40; ++k) EXPECT_FALSE(symmetric_places(*triangle, in_triangle, 6, 0.1, random));
 }
 
 /// Rosenbrock's valley, whose floor is a parabola, and a bowl with axes from 1 to 1,000.
