@@ -24,6 +24,11 @@ constexpr double volume_a_milestone = 0.01, squeeze_a_milestone = 0.1;
 /// Spheres below this compressibility factor, a dimension, are a fluid that forgets how fast it was
 /// compressed.
 constexpr double fluid = 4, haste_of_fluid = 10;
+/// Fast growth locks spheres that slower growth frees again. So where the pressure is reached it goes on at a
+/// third of its rate, until that adds less than this share to the volume of the spheres, or less than what
+/// spheres at this pressure lack to their jamming: D over the compressibility factor (Salsburg & Wood, J.
+/// Chem. Phys. 37, 798 (1962)).
+constexpr double slower = 1.0 / 3, little_more = 1e-3;
 
 /// The papers' phi_init; in other than three dimensions as far below where random insertion ends.
 constexpr double loose_start[] = {0.28, 0.2, 0.135, 0.089, 0.057};
@@ -191,12 +196,18 @@ Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Report
               const Grow& options, const std::function<void(double size, double done)>& on_growth) {
   HardSpheres<D> flight(spheres, arena.edges, report.random(Stream::grow),
                         {.walls = arena.walls, .masses = options.masses});
-  const double rate = growth_rate<D>(spheres, arena.volume, options);
+  double rate = growth_rate<D>(spheres, arena.volume, options);
   StageEnd end = StageEnd::converged;
-  double next_squeezed = 0, next_filled = 0;
+  double next_squeezed = 0, next_filled = 0, locked = 0;
   FlightPeriod period;
-  const Resumable part(report, "flight", [&](Archive& a) { a(flight, next_squeezed, next_filled, period); });
-  while (flight.size() < largest && period.compressibility_factor < options.pressure) {
+  const Resumable part(report, "flight",
+                       [&](Archive& a) { a(flight, next_squeezed, next_filled, period, rate, locked); });
+  while (flight.size() < largest) {
+    if (period.compressibility_factor >= options.pressure) {
+      if (D * std::log(flight.size() / locked) < std::max(little_more, D / options.pressure)) break;
+      locked = flight.size();
+      rate *= slower;
+    }
     if (!flight.has_room()) {
       end = StageEnd::hit_limit;
       break;
@@ -273,11 +284,12 @@ const StageEntry& entry_of<Grow>() {
                             "growth of the mean diameter by volume over the thermal speed where the packing "
                             "forms; slower is denser; ten times that while the spheres are a fluid",
                             {1e-6, 1})),
-                 buys_accuracy(
-                     {1e2, 1e3, 1e4, 1e6, 1e9},
-                     number(&Grow::pressure, "pressure",
-                            "compressibility factor P V / N k T at which the spheres count as jammed",
-                            {10, 1e13})),
+                 buys_accuracy({1e2, 1e3, 1e4, 1e6, 1e9},
+                               number(&Grow::pressure, "pressure",
+                                      "compressibility factor P V / N k T at which the spheres count as "
+                                      "jammed, once slower "
+                                      "growth adds nothing",
+                                      {10, 1e13})),
                  word(&Grow::masses, "masses",
                       "equal, as published; volume: as of one material, which packs denser where sizes "
                       "differ "

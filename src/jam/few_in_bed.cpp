@@ -1,34 +1,35 @@
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "bernal/core/text.hpp"
 #include "jam/few_spheres.hpp"
+#include "settle/insert.hpp"
 
 namespace bernal {
 namespace {
 
-/// Of the search, how much each of the spheres is worth that nobody has asked for by number: so much, and of
-/// more than sixteen that times sixteen over their number, 0.2 s at most.
-constexpr double effort_of_one_more = 0.125, with_full_effort = 16;
-/// In largest roundings of a coordinate: gaps that no rounding closes, of spheres that nobody moves any more.
-constexpr double gap_in_roundings = 1e3;
-
 class FewInBed {
  public:
   FewInBed(SpheresInBed& in_bed, Reporter& report)
-      : in_bed_(in_bed), report_(report), gap_(gap_in_roundings * in_bed.bed().container().resolution()) {}
+      : in_bed_(in_bed), report_(report), gap_(gap_of_few(in_bed.bed().container())) {}
 
   StageEnd run(StageEnd end) {
     const Target& target = in_bed_.task.target;
-    const std::size_t wanted = in_bed_.supply->wanted(), there = in_bed_.bed().size();
-    if (!target.is_open() && there < wanted && place(wanted, 1)) return StageEnd::converged;
+    const std::size_t wanted = in_bed_.supply->wanted();
+    if (in_bed_.bed().size() < wanted && of_one_size()) lay_out();
+    const std::size_t there = in_bed_.bed().size();
+    if (!target.is_open() && (there == wanted || place(wanted, 1))) return StageEnd::converged;
     bool all_tried = false;
     for (std::size_t count = there + 1; count <= wanted && !cancelled_ && !all_tried; ++count) {
       if (!are_few(count, in_bed_.bed().container())) return end;
       if (!target.is_open() && count == wanted) break;
-      all_tried = !place(count, effort_for(count));
+      all_tried = !place(count, effort_of_one_more(static_cast<double>(count)));
     }
     if (cancelled_) return StageEnd::cancelled;
     if (target.is_open() && all_tried)
@@ -37,14 +38,36 @@ class FewInBed {
   }
 
  private:
+  bool of_one_size() const { return in_bed_.supply->smallest() == in_bed_.supply->largest(); }
+
+  /// On a simple cubic lattice, if more find their places there than stand.
+  void lay_out() {
+    const BedKeepsake before(in_bed_);
+    const std::size_t there = in_bed_.bed().size();
+    in_bed_.put_back({});
+    const Monitor nobody;  // it takes no time, and nothing may be lost meanwhile
+    std::vector<Vector<3>> sites = crystal_sites({.layout = Layout::sc}, in_bed_, nobody);
+    if (sites.size() > in_bed_.supply->wanted()) sites.resize(in_bed_.supply->wanted());
+    in_bed_.put_back(sites.size() > there ? first_drawn(sites) : before.spheres());
+  }
+
+  FirstDrawn first_drawn(const std::vector<Vector<3>>& places) const {
+    FirstDrawn drawn;
+    drawn.extend(places.size(), *in_bed_.supply);
+    for (std::size_t i = 0; i < places.size(); ++i) drawn.spheres.set_center(i, places[i]);
+    drawn.placed.assign(places.size(), true);
+    return drawn;
+  }
+
   /// So many of the sequence in place of what stands there, if there is a way. Returns whether they stand.
   bool place(std::size_t count, double effort) {
     const Bed& bed = in_bed_.bed();
     if (!are_few(count, bed.container())) return false;
+    if (in_bed_.task.few_places.size() == count) return stand(first_drawn(in_bed_.task.few_places));
     Spheres<3> spheres = in_bed_.drawn(count).spheres;
     spheres.resize(count);
+    if (volume_of(spheres) > most_volume()) return false;
     const double share = volume_of(spheres) / bed.container().volume();
-    if (share > densest_known(bed.dimension())) return false;
     const double enough = 1 + gap_ / std::ranges::min(spheres.r);
     const FewPacked packed = pack_few(spheres.r, bed.container(), bed.places(),
                                       {.enough = enough,
@@ -58,14 +81,13 @@ class FewInBed {
                                        }});
     report_.effects["relaxation"].calls += packed.minima;
     cancelled_ = packed.cancelled;
-    if (packed.size < enough) return false;
-    for (std::size_t i = 0; i < count; ++i) spheres.set_center(i, packed.centers[i]);
-    return stand(spheres);
+    return packed.size >= enough && stand(first_drawn(packed.centers));
   }
 
   /// In place of all that is in the bed, if they fit by the gap, which may be less than the bed's skin.
-  bool stand(const Spheres<3>& spheres) {
+  bool stand(const FirstDrawn& few) {
     const Container& container = in_bed_.bed().container();
+    const Spheres<3>& spheres = few.spheres;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       const Vector<3> place = spheres.center(i);
       std::optional<EffectTimer> exact_timer;
@@ -75,16 +97,18 @@ class FewInBed {
       for (std::size_t j = 0; j < i; ++j)
         if (!((place - spheres.center(j)).norm() >= spheres.r[i] + spheres.r[j] + gap_)) return false;
     }
-    in_bed_.put_back({spheres, std::vector<bool>(spheres.size(), true)});
+    in_bed_.put_back(few);
     return true;
   }
 
-  static double effort_for(std::size_t count) {
-    return effort_of_one_more * std::min(1.0, with_full_effort / static_cast<double>(count));
+  /// More does not fit: boxes, put side by side, fill space, and no arrangement of spheres of one size fills
+  /// more than this of it (Thue 1892, Hales 2005). Other containers may be as round as what is in them.
+  double most_volume() const {
+    using std::numbers::pi;
+    const auto* box = std::get_if<Box>(&in_bed_.task.domain);
+    if (!box || !of_one_size()) return in_bed_.bed().container().volume();
+    return box->size.prod() * pi / std::sqrt(in_bed_.bed().dimension() == 2 ? 12.0 : 18.0);
   }
-
-  /// Of the volume: equal spheres fill no more. Mixtures that would are not searched for.
-  static double densest_known(int dimension) { return dimension == 2 ? 0.9069 : 0.7405; }
 
   SpheresInBed& in_bed_;
   Reporter& report_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -11,12 +12,14 @@
 #include "jam/few_energy.hpp"
 #include "jam/lattice_places.hpp"
 #include "jam/quasi_newton.hpp"
+#include "jam/symmetric_places.hpp"
+#include "work/room.hpp"
 
 namespace bernal {
 namespace {
 
 /// Overlap ratios: at the start, at which minima are compared, and of those that are looked at closely.
-constexpr double rough = 0.05, compared = 3e-3, close = 3e-4;
+constexpr double rough = 0.05, compared = 3e-3, closely = 3e-4;
 /// Of the tightest, how much looser a minimum may seem at these two and turn out to be tighter; and what is
 /// as tight as the tightest is the same again.
 constexpr double unsure = 3e-3, hardly_unsure = 3e-5, same_again = 1e-9;
@@ -25,11 +28,16 @@ constexpr double minima_a_sphere = 60, most_work = 6.5e9;
 /// What a value of the energy, a solution of its equations and a look at a piece of wall cost, in these: N²
 /// and (D N)³ times, and as it stands.
 constexpr double work_a_value = 4, work_a_solution = 1.0 / 6, work_a_look = 100, spheres_of_overhead = 4;
+/// Of the search, what begins anew without hops; so many of the tightest of these hop then, each of another
+/// minimum: tighter by this at least.
+constexpr double share_without_hops = 0.35, another = 1e-6;
+constexpr std::size_t kept_starts = 6;
 /// Hops in a row that find nothing tighter, until it starts anew; and, of the tightest, from where on a start
 /// is worth hops.
 constexpr int most_idle_hops = 20;
 constexpr double worth_hops = 0.98;
-constexpr int starts_that_hop = 4, starts_to_close = 30;
+/// How often another group of symmetries is tried until the container has it.
+constexpr int most_groups = 20;
 /// Of what is asked for: what has less after this share of the search does not come to it.
 constexpr double hopeless = 0.95, share_to_hope = 0.25;
 constexpr int most_draws = 10'000;
@@ -49,24 +57,58 @@ class FewSearch {
         of_one_size_(std::ranges::all_of(radii, [&](double r) { return r == radii.front(); })) {}
 
   FewPacked run() {
-    for (std::uint64_t start = 0; !over(); ++start) {
-      Eigen::VectorXd point = start % 2 == 0 ? at_random() : on_lattice();
-      const double size = relaxed(point, start % 2 == 0);
-      if (start < starts_to_close) look_at(point, size);
-      if (start >= starts_that_hop && size < worth_hops * found_.size) continue;
-      look_at(point, size);
-      hop_from(point, size);
+    if (energy_.size() == 1) {
+      close(started(at({largest_room(energy_.container()).place}), false));
+      return std::move(found_);
     }
+    if (auto places = grid_places(energy_.container(), energy_.size()))
+      close(started(among(std::move(*places), 0), false));
+    std::vector<Start> tightest;
+    while (!over() && done_now() < share_without_hops) {
+      Start start = begin();
+      if (tightest.empty() || start.size > tightest.front().size) close(start);
+      keep(std::move(start), tightest);
+    }
+    for (Start& start : tightest)
+      if (!over()) hop_from(start);
+    while (!over())
+      if (Start start = begin(); start.size >= worth_hops * best()) hop_from(start);
     return std::move(found_);
   }
 
  private:
+  struct Start {
+    Eigen::VectorXd point;
+    double size;
+  };
+
+  /// Anew, symmetric every other time.
+  Start begin() {
+    const std::uint64_t kind = starts_++ % 4;
+    return started(kind == 1 ? on_lattice() : kind == 3 ? at_random() : symmetric(), kind != 1);
+  }
+
+  Start started(Eigen::VectorXd point, bool from_afar) {
+    const double size = relaxed(point, from_afar);
+    return {std::move(point), size};
+  }
+
+  static void keep(Start start, std::vector<Start>& tightest) {
+    const auto place = std::ranges::lower_bound(tightest, start.size, std::ranges::greater(), &Start::size);
+    const auto is_same = [&](const Start& other) {
+      return std::abs(other.size - start.size) < another * start.size;
+    };
+    if (std::ranges::any_of(tightest, is_same)) return;
+    tightest.insert(place, std::move(start));
+    if (tightest.size() > kept_starts) tightest.pop_back();
+  }
+
   bool over() {
     if (found_.size >= wish_.enough || found_.cancelled) return true;
     if (wish_.monitor.stop()) return found_.cancelled = true;
     const double done = done_now();
     if (wish_.tell && found_.minima % 16 == 0) wish_.tell(std::min(done, 1.0), found_.size);
-    const bool hopes = std::isinf(wish_.enough) || found_.size >= hopeless * wish_.enough;
+    const bool hopes = std::isinf(wish_.enough) || best() >= hopeless * wish_.enough;
     return done >= (hopes ? 1 : share_to_hope);
   }
 
@@ -81,6 +123,8 @@ class FewSearch {
            wish_.effort;
   }
 
+  double best() const { return std::max(found_.size, waiting_.size); }
+
   /// In the container, or after many draws near it.
   Vector<3> place() {
     Vector<3> p = places_.draw(random_);
@@ -88,25 +132,39 @@ class FewSearch {
     return p;
   }
 
-  Eigen::VectorXd at_random() {
+  Eigen::VectorXd at(const std::vector<Vector<3>>& places) const {
     Eigen::VectorXd point(energy_.unknowns());
-    for (std::size_t i = 0; i < energy_.size(); ++i) energy_.set_center(point, i, place());
+    for (std::size_t i = 0; i < energy_.size(); ++i) energy_.set_center(point, i, places[i]);
     energy_.set_size(point, energy_.expected_size());
     return point;
   }
 
-  /// Spheres of several sizes take its places as chance has it.
+  Eigen::VectorXd at_random() {
+    std::vector<Vector<3>> places(energy_.size());
+    for (Vector<3>& p : places) p = place();
+    return at(places);
+  }
+
   Eigen::VectorXd on_lattice() {
     constexpr double jitter = 1e-3;
     const double r = energy_.expected_size() * mean_radius();
     auto sites = lattice_places(energy_.container(), energy_.size(), r, random_);
-    if (!sites) return at_random();
-    if (!of_one_size_) shuffle(*sites);
-    Eigen::VectorXd point(energy_.unknowns());
-    for (std::size_t i = 0; i < energy_.size(); ++i)
-      energy_.set_center(point, i, (*sites)[i] + jitter * r * random_way());
-    energy_.set_size(point, energy_.expected_size());
-    return point;
+    return sites ? among(std::move(*sites), jitter * r) : at_random();
+  }
+
+  Eigen::VectorXd symmetric() {
+    const double r = energy_.expected_size() * mean_radius();
+    for (int k = 0; k < most_groups && of_one_size_; ++k)
+      if (auto all = symmetric_places(energy_.container(), places_, energy_.size(), r, random_))
+        return at(*all);
+    return at_random();
+  }
+
+  /// Spheres of several sizes take these places as chance has it.
+  Eigen::VectorXd among(std::vector<Vector<3>> places, double jitter) {
+    if (!of_one_size_) shuffle(places);
+    for (Vector<3>& p : places) p += jitter * random_way();
+    return at(places);
   }
 
   double mean_radius() const {
@@ -154,23 +212,38 @@ class FewSearch {
     return energy_.size_without_load(point);
   }
 
-  /// Keeps it if it is the tightest.
+  /// Keeps it if it is the tightest since the last that was closed. Closing takes as long as some hops: it
+  /// waits until nothing tighter is found near.
   void look_at(Eigen::VectorXd point, double size) {
-    if (size < (1 - unsure) * found_.size) return;
-    minimise(point, close, 1e-10, 0.01, 600);
-    const double closely = size_without_load(point);
-    if (closely < (1 - hardly_unsure) * found_.size) return;
-    if (std::abs(closely - closely_) < same_again * closely) return;
-    solved_ += close_few(energy_, point, 0.1 * close);
+    if (size < (1 - unsure) * best()) return;
+    minimise(point, closely, 1e-10, 0.01, 600);
+    size = size_without_load(point);
+    if (size <= waiting_.size || size < (1 - hardly_unsure) * found_.size) return;
+    if (std::abs(size - seemed_) < same_again * size) return;
+    waiting_ = {std::move(point), size};
+  }
+
+  void close(const Start& start) {
+    look_at(start.point, start.size);
+    close_waiting();
+  }
+
+  void close_waiting() {
+    if (!(waiting_.size > 0)) return;
+    Eigen::VectorXd& point = waiting_.point;
+    const double seemed = std::exchange(waiting_.size, 0);
+    solved_ += close_few(energy_, point, 0.1 * closely);
     const double closed = energy_.size_of(point);
     if (!(closed > found_.size)) return;
-    closely_ = closely;
+    seemed_ = seemed;
     found_.size = closed;
     found_.centers.resize(energy_.size());
     for (std::size_t i = 0; i < energy_.size(); ++i) found_.centers[i] = energy_.center(point, i);
   }
 
-  void hop_from(Eigen::VectorXd& point, double size) {
+  void hop_from(Start& from) {
+    auto& [point, size] = from;
+    look_at(point, size);
     for (int idle = 0; idle < most_idle_hops && !over();) {
       Eigen::VectorXd other = point;
       disturb(other);
@@ -181,6 +254,7 @@ class FewSearch {
       size = size_there;
       look_at(point, size);
     }
+    close_waiting();
   }
 
   void disturb(Eigen::VectorXd& point) {
@@ -254,15 +328,31 @@ class FewSearch {
   Random random_;
   const bool of_one_size_;
   QuasiNewton newton_;
-  std::uint64_t solved_ = 0;
-  double closely_ = 0;  // how tight the tightest seemed before it was closed
+  std::uint64_t starts_ = 0, solved_ = 0;
+  Start waiting_ = {{}, 0};  // to be closed
+  double seemed_ = 0;        // how tight the tightest seemed before it was closed
   FewPacked found_;
 };
 
 }  // namespace
 
 bool are_few(std::size_t count, const Container& container) {
-  return count >= 2 && count <= most_few && !container.boundary().repeats();
+  return count >= 1 && count <= most_few && !container.boundary().repeats();
+}
+
+double gap_of_few(const Container& container) {
+  constexpr double roundings = 32;
+  return roundings * container.resolution();
+}
+
+double seconds_of_few(double count) {
+  constexpr double of_five = 0.03, power = 2.4, most = 4;
+  return std::min(most, of_five * std::pow(count / 5, power));
+}
+
+double effort_of_one_more(double count) {
+  constexpr double effort = 0.125, of_count = 40;
+  return effort * std::min(1.0, of_count / count);
 }
 
 /// By proportions that are rounded, so that sizes that are all multiplied by one factor go the same way.
@@ -274,6 +364,7 @@ FewPacked pack_few(const std::vector<double>& radii, const Container& container,
     proportions.push_back(std::ldexp(std::round(std::ldexp(r / largest, bits)), -bits));
   FewWish in_proportion = wish;
   in_proportion.enough *= largest;
+  if (wish.tell) in_proportion.tell = [&](double done, double size) { wish.tell(done, size / largest); };
   FewPacked packed = FewSearch(proportions, container, places, in_proportion).run();
   packed.size /= largest;
   return packed;

@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "settle/crystal.hpp"
+
 namespace bernal {
 namespace {
 
@@ -18,28 +20,9 @@ constexpr int halvings = 14;
 constexpr double most_cells = 40'000;
 constexpr double stretch = 0.1;
 
-/// Cells with edges along the axes, in spacings of nearest neighbours, and the places in them, in edges.
-struct Lattice {
-  Vector<3> cell;
-  std::vector<Vector<3>> places;
-};
-
-Lattice lattice_of(int dimension, Random& random) {
-  const double two = std::numbers::sqrt2, three = std::numbers::sqrt3;
-  const auto kind = static_cast<int>(random.uniform() * (dimension == 3 ? 4 : 2));
-  if (dimension == 2)
-    return kind == 0 ? Lattice{{1, 1, 1}, {{0, 0, 0}}} : Lattice{{1, three, 1}, {{0, 0, 0}, {0.5, 0.5, 0}}};
-  switch (kind) {
-    case 0:
-      return {{1, 1, 1}, {{0, 0, 0}}};
-    case 1:
-      return {{two, two, two}, {{0, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}};
-    case 2:
-      return {Vector<3>::Constant(2 / three), {{0, 0, 0}, {0.5, 0.5, 0.5}}};
-    default:
-      return {{1, three, std::sqrt(8.0 / 3)},
-              {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 1.0 / 6, 0.5}, {0, 2.0 / 3, 0.5}}};
-  }
+CrystalCell random_cell(int dimension, Random& random) {
+  constexpr Layout kinds[] = {Layout::sc, Layout::fcc, Layout::bcc, Layout::hcp};
+  return cell_of(kinds[static_cast<std::size_t>(random.uniform() * (dimension == 3 ? 4 : 2))], dimension);
 }
 
 Eigen::Matrix3d turn(int dimension, Random& random) {
@@ -69,13 +52,13 @@ class Sites {
  public:
   Sites(const Container& container, Random& random)
       : container_(container),
-        lattice_(lattice_of(container.dimension(), random)),
+        lattice_(random_cell(container.dimension(), random)),
         to_space_(turn(container.dimension(), random)) {
     const int dimension = container.dimension();
     for (int k = 0; k < dimension; ++k) shift_[k] = random.uniform();
     if (random.uniform() < 0.5)
       for (int k = 0; k < dimension; ++k) shift_[k] = 0.25 * std::floor(4 * shift_[k]);
-    Vector<3> stretched = lattice_.cell;
+    Vector<3> stretched = lattice_.edges;
     if (random.uniform() < 0.5)
       for (int k = 0; k < dimension; ++k) stretched[k] *= std::exp(random.uniform(-stretch, stretch));
     to_space_ = to_space_ * stretched.asDiagonal();
@@ -87,7 +70,7 @@ class Sites {
     const Eigen::Matrix3d to_cells = (spacing * to_space_).inverse();
     along = (to_cells.cwiseAbs() * half).array().ceil() + 2;  // the shift and a place in a cell are below 1
     if (container_.dimension() == 2) along[2] = 0;
-    return (2 * along.array() + 1).prod() * static_cast<double>(lattice_.places.size());
+    return (2 * along.array() + 1).prod() * static_cast<double>(lattice_.sites.size());
   }
 
   std::vector<Site> with(double spacing) const {
@@ -98,7 +81,7 @@ class Sites {
     for (double i = -along[0]; i <= along[0]; ++i)
       for (double j = -along[1]; j <= along[1]; ++j)
         for (double k = -along[2]; k <= along[2]; ++k)
-          for (const Vector<3>& place : lattice_.places) {
+          for (const Vector<3>& place : lattice_.sites) {
             const Vector<3> in_cells = place + shift_ + Vector<3>(i, j, k);
             Vector<3> at = middle + spacing * (to_space_ * in_cells);
             if (container_.dimension() == 2) at[2] = 0;
@@ -111,7 +94,7 @@ class Sites {
 
  private:
   const Container& container_;
-  const Lattice lattice_;
+  const CrystalCell lattice_;
   Eigen::Matrix3d to_space_;
   Vector<3> shift_ = Vector<3>::Zero();
 };
@@ -140,6 +123,27 @@ std::optional<std::vector<Vector<3>>> lattice_places(const Container& container,
       std::swap(sites[i], sites[i + random() % (sites.size() - i)]);
   std::vector<Vector<3>> places;
   for (std::size_t i = 0; i < count; ++i) places.push_back(sites[i].place);
+  return places;
+}
+
+std::optional<std::vector<Vector<3>>> grid_places(const Container& container, std::size_t count) {
+  const Bounds<3> bounds = container.bounds();
+  Vector<3> cells = Vector<3>::Ones(), size = bounds.size();
+  if (container.dimension() == 2) size[2] = 0;
+  while (cells.prod() < static_cast<double>(count)) {
+    int widest = 0;  // the axis along which one more cell leaves the most to each
+    (size.array() / (cells.array() + 1)).maxCoeff(&widest);
+    ++cells[widest];
+  }
+  std::vector<Vector<3>> places;
+  for (double i = 0; i < cells[0]; ++i)
+    for (double j = 0; j < cells[1]; ++j)
+      for (double k = 0; k < cells[2] && places.size() < count; ++k) {
+        const Vector<3> middle_of_cell = (Vector<3>(i, j, k).array() + 0.5) / cells.array();
+        const Vector<3> place = bounds.lower + middle_of_cell.cwiseProduct(size);
+        if (!(container.clearance(place) > 0)) return {};
+        places.push_back(place);
+      }
   return places;
 }
 

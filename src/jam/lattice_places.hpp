@@ -18,4 +18,8 @@ namespace bernal {
 std::optional<std::vector<Vector<3>>> lattice_places(const Container& container, std::size_t count,
                                                      double radius, Random& random);
 
+/// The places of the widest grid along the axes that fills the container's bounds with so many cells or more:
+/// in a box those of spheres that divide it. Nothing where not so many of them are inside.
+std::optional<std::vector<Vector<3>>> grid_places(const Container& container, std::size_t count);
+
 }  // namespace bernal

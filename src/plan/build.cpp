@@ -111,8 +111,8 @@ void expect_in_container(Plan& plan) {
         return requires { kind.max; };
       },
       scene.sizes);
-  if (std::isfinite(plan.radii->max()))
-    require_fitting(scene, container, made, plan.radii->max(),
+  if (const double largest = largest_to_fit(plan); std::isfinite(largest))
+    require_fitting(scene, container, made, largest,
                     has_limit ? "give the sizes a \"max\" of that, use smaller ones" : "use smaller ones");
   frame_for(scene, container, *plan.radii);
   if (!made) made = container_of(plan);
@@ -351,9 +351,13 @@ static Plan finished(Plan plan) {
 
 Plan made_plan(const Scene& stated, const PlaceOfPlan* place) { return finished(begun_plan(stated, place)); }
 
+bool all_may_fit(const Plan& plan) {
+  return needs_room(plan) ? may_fit(plan_with_room(plan)) : may_fit(plan);
+}
+
 std::optional<Plan> made_plan_where_all_fit(const Scene& stated) {
   Plan plan = begun_plan(stated);
-  if (!(needs_room(plan) ? may_fit(plan_with_room(plan)) : may_fit(plan))) return {};
+  if (!all_may_fit(plan)) return {};
   return finished(std::move(plan));
 }
 

@@ -9,6 +9,8 @@
 #include "bernal/soft/relax.hpp"
 #include "jam/few_spheres.hpp"
 #include "plan/estimate.hpp"
+#include "plan/room_for_gaps.hpp"
+#include "plan/stages.hpp"
 #include "sizes/volume_carriers.hpp"
 
 namespace bernal {
@@ -68,11 +70,39 @@ bool is_guess(const Plan& plan) {
          error_between_walls(plan.domain, *plan.radii) >= a_guess;
 }
 
+bool packs_few(const Scene& scene) {
+  const Stage& last = scene.stages.back();
+  const StageTraits& traits = table_of(last).traits;
+  if (scene.is_periodic() || scene.target.bed.is_asked() || !traits.stands_in_bed(scene)) return false;
+  return scene.dimension() == 2 ? traits.reaches == Reaches::settled : last.as<Relax>() != nullptr;
+}
+
 bool is_tried(const Plan& plan) {
-  const Scene& scene = plan.scene;
   const double most = (1 + error_between_walls(plan.domain, *plan.radii)) * plan.expected_count;
-  return is_guess(plan) && !is_periodic(plan.domain) && scene.stages.back().as<Relax>() &&
+  return is_guess(plan) && !is_periodic(plan.domain) && packs_few(plan.scene) &&
          most < static_cast<double>(most_few);
+}
+
+bool is_searched_once(const Plan& plan) {
+  return packs_few(plan.scene) && *plan.scene.target.count <= static_cast<std::int64_t>(most_few) &&
+         !needs_room(plan) && std::isfinite(plan.radii->max());
+}
+
+std::optional<PlanItem> search_for_few(const Plan& plan) {
+  constexpr double tries = 3;  // of one more, where as many as fit are wanted
+  const Target& target = plan.scene.target;
+  const double likely = plan.expected_count,
+               wanted = target.count ? static_cast<double>(*target.count) : likely + 1;
+  if (!packs_few(plan.scene) || is_periodic(plan.domain) || wanted > static_cast<double>(most_few)) return {};
+  PlanItem item{.name = "relaxation",
+                .what = "of few spheres, from many beginnings, for the tightest arrangement",
+                .cost = "O(N²) a step"};
+  if (target.is_open())
+    item.seconds = tries * effort_of_one_more(wanted) * seconds_of_few(wanted);
+  else if (target.count && likely < wanted)
+    item.seconds = seconds_of_few(wanted);
+  item.if_needed = !(item.seconds > 0);
+  return item;
 }
 
 std::optional<std::uint64_t> give_or_take(const Plan& plan) {

@@ -29,8 +29,17 @@ std::string remedy_of(const FewLarge&, double count, const Scene& scene, const V
 /// Whether as many spheres are to be placed as are expected or fit, and walls are so near everywhere that how
 /// many that are is a guess.
 bool is_guess(const Plan& plan);
-/// Whether one more is tried after the other then, as they are few: see `place_few`.
+/// Whether the stages end with a search for an arrangement of few spheres, see `place_few`: relaxation in a
+/// container last, and in the plane what settles last, but no bed, whose spheres are to rest.
+bool packs_few(const Scene& scene);
+/// Whether one more is tried after the other then, as they are few.
 bool is_tried(const Plan& plan);
+/// Whether such a search finds the largest spheres of a count: not where sizes have no end, or gaps around
+/// them that do not grow with them.
+bool is_searched_once(const Plan& plan);
+/// What a search is expected to take: where more are asked for than are likely to fit, and where one
+/// more is tried. Nothing where there are too many.
+std::optional<PlanItem> search_for_few(const Plan& plan);
 /// Of a guess, where as many as are expected are wanted: how many these may be too few or too many, at least
 /// one.
 std::optional<std::uint64_t> give_or_take(const Plan& plan);

@@ -109,9 +109,24 @@ Largest largest_for(const Domain& container, const std::shared_ptr<const Contain
 
 }  // namespace
 
+double largest_to_fit(const Plan& plan) {
+  constexpr std::int64_t quickly_drawn = 100'000;
+  const Scene& scene = plan.scene;
+  const double most = plan.radii->max();
+  if (!std::isfinite(most) || scene.is_periodic() || !scene.draw || !scene.target.count ||
+      *scene.target.count > quickly_drawn || most <= largest_for(plan.domain, plan.container, most).bound)
+    return most;
+  const Supply::Source source{.radii = *plan.radii,
+                              .dimension = scene.dimension(),
+                              .seed = scene.seed,
+                              .draw = *scene.draw,
+                              .first = plan.start.spheres.r};
+  return Supply(source, volume_of(plan.domain), scene.target).largest();
+}
+
 bool may_fit(const Plan& plan) {
   const Scene& scene = plan.scene;
-  const double most = plan.radii->max(), radius = std::isfinite(most) ? most : plan.radii->quantile(0.5);
+  const double most = largest_to_fit(plan), radius = std::isfinite(most) ? most : plan.radii->quantile(0.5);
   const double allowed = has_walls(plan.domain) ? 0 : scene.overlap, least = (1 - allowed) * radius;
   if (least > largest_for(plan.domain, plan.container, least).bound) return false;
   return !any_in_bed(scene) || shortest_period(plan.domain) >= Bed::least_period * 2 * radius;

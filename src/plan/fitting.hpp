@@ -30,9 +30,13 @@ void require_fitting(const Scene& scene, const Domain& container,
                      const std::shared_ptr<const Container>& made, double radius,
                      std::string_view remedy = "use smaller ones");
 
-/// Whether the largest spheres of a plan may fit into its domain, each by itself, so that neither of these
-/// two refuses them; of sizes without end those of the median. Precondition: domain and radii are made. Cost:
-/// as `require_fitting`.
+/// The largest radius that has to fit into a plan's domain: that of its sizes, infinite where these have no
+/// end; of a count whose radii are drawn as the scene says, and not from a cut tail, the largest that its
+/// seed draws, where that one is too large. Precondition: domain and radii are made. Cost: as
+/// `require_fitting`.
+double largest_to_fit(const Plan& plan);
+
+/// Whether that may fit, by itself, so that neither of these two refuses it; of sizes without end the median.
 bool may_fit(const Plan& plan);
 
 /// Throws Error{bad_argument}: not a single random place was found in it.

@@ -8,7 +8,9 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "jam/few_spheres.hpp"
 #include "plan/cell_sizes.hpp"
+#include "plan/few_large.hpp"
 #include "plan/plan_insides.hpp"
 #include "plan/plan_zones.hpp"
 
@@ -35,13 +37,17 @@ Plan plan_of_largest(const Scene& stated) {
   }
   if (!plan) plan = made_plan(scene);  // which says why they do not fit
   plan->expected_packing_fraction = plan->attainable_packing_fraction;
-  plan->items.push_back({.name = "search",
-                         .what =
-                             "the same for larger and larger spheres, and for sizes in between, from several "
-                             "beginnings each, until the largest are known to 1e-4; of few spheres the "
-                             "tightest of some thousand arrangements, in 10 s at most",
-                         .cost = "some 100 runs",
-                         .seconds = runs * (dear * plan->expected_seconds + least_seconds)});
+  if (is_searched_once(*plan))
+    plan->items.push_back({.name = "search",
+                           .what = "for the tightest arrangement of so few spheres, from many beginnings",
+                           .cost = "O(N²) a step",
+                           .seconds = seconds_of_few(static_cast<double>(*scene.target.count))});
+  else
+    plan->items.push_back({.name = "search",
+                           .what = "the same for larger and larger spheres, and for sizes in between, from "
+                                   "several beginnings each, until the largest are known to 1e-4",
+                           .cost = "some 100 runs",
+                           .seconds = runs * (dear * plan->expected_seconds + least_seconds)});
   plan->expected_seconds += plan->items.back().seconds;
   return std::move(*plan);
 }

@@ -17,5 +17,7 @@ Plan made_plan(const Scene& scene, const PlaceOfPlan* place = nullptr);
 /// The same; nothing where the largest of its spheres do not fit into their domain by themselves, see
 /// `may_fit`.
 std::optional<Plan> made_plan_where_all_fit(const Scene& scene);
+/// Whether they would, by the seed of the plan's scene.
+bool all_may_fit(const Plan& plan);
 
 }  // namespace bernal

@@ -137,6 +137,7 @@ void price_effects(Plan& plan) {
         entry.reached ? std::min(outlook.aim, entry.reached(entry.table.options(stage))) : outlook.aim;
   }
 
+  if (const std::optional<PlanItem> search = search_for_few(plan)) add(plan.items, *search);
   if (scene.walls == WallArithmetic::exact) add_exact_walls(plan.items);
 
   const auto is_planned = [&](const std::string& name) {

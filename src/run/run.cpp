@@ -71,7 +71,7 @@ double random_close_packing_of(const Plan& plan) {
 /// over has not.
 class Run {
  public:
-  Run(const Plan& plan, const RunOptions& options, Packing& packing)
+  Run(const Plan& plan, const RunOptions& options, Packing& packing, std::vector<Vector<3>> few_places = {})
       : stated_(plan),
         with_room_(needs_room(plan) ? std::optional(plan_with_room(plan)) : std::nullopt),
         plan_(with_room_ ? *with_room_ : plan),
@@ -79,6 +79,7 @@ class Run {
         monitor_(options.monitor),
         engine_folder_(options.engine_folder),
         packing_(packing),
+        few_places_(std::move(few_places)),
         any_in_bed_(any_in_bed(plan.scene)),
         record_(packing),
         exact_place_(plan_, frame_),
@@ -195,6 +196,7 @@ class Run {
     supply->divide_by(frame_.scale);
     task.frame = frame_;
     task.target.bed.above_ground /= frame_.scale;
+    task.few_places = few_places_;
     if (any_in_bed_)
       task.exact_place = [this](const Vector<3>& place, double r) { return exact_place_.near(place, r); };
     if (with_room_)
@@ -345,6 +347,7 @@ class Run {
   const Monitor& monitor_;
   const std::filesystem::path& engine_folder_;
   Packing& packing_;
+  const std::vector<Vector<3>> few_places_;
   const bool any_in_bed_;
   RunRecord record_;
   Reporter* report_ = nullptr;            // while stages act
@@ -367,7 +370,7 @@ Packing run(const Plan& plan, const RunOptions& options) {
   return run_spheres(plan, options);
 }
 
-Packing run_spheres(const Plan& plan, const RunOptions& options) {
+Packing run_spheres(const Plan& plan, const RunOptions& options, std::vector<Vector<3>> few_places) {
   if (plan.scene.largest) return run_largest(plan, options);
   if (!plan.parts.empty()) return run_zones(plan, options);
   if (plan.scene.cells) return run_cells(plan, options);
@@ -377,7 +380,7 @@ Packing run_spheres(const Plan& plan, const RunOptions& options) {
   packing.volume = volume_of(plan.domain);
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                             static_cast<std::size_t>(std::max(1, packing.threads)));
-  Run(plan, options, packing).go();
+  Run(plan, options, packing, std::move(few_places)).go();
   packing.classes = classes_by_size(packing);
   return packing;
 }

@@ -3,8 +3,8 @@
 
 namespace bernal {
 
-/// `run` without what lies inside of spheres.
-Packing run_spheres(const Plan& plan, const RunOptions& options);
+/// `run` without what lies inside of spheres; `few_places` as in `Task`.
+Packing run_spheres(const Plan& plan, const RunOptions& options, std::vector<Vector<3>> few_places = {});
 
 /// `run` of a plan with packings inside of spheres: the spheres first, then each packing that they hold, by a
 /// seed of its own that follows from that of the run, in as many threads at a time as the run has; then,

@@ -8,12 +8,14 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "bernal/cad/mesh_container.hpp"
 #include "bernal/core/text.hpp"
 #include "jam/few_spheres.hpp"
+#include "plan/few_large.hpp"
 #include "plan/made_plan.hpp"
 #include "plan/room_for_gaps.hpp"
 #include "run/begin_packing.hpp"
@@ -49,7 +51,7 @@ class Search {
     if (options_.checkpoints.resume && options_.checkpoints.tell)
       options_.checkpoints.tell("the search for the largest spheres has no checkpoints; it starts anew");
     double scale = plan_.scene.scale;
-    if (const std::optional<double> of_few = scale_of_few(); of_few && fits(*of_few, 1)) return concluded();
+    if (few_fit()) return concluded();
     minima_of_few_ = 0;
     for (int down = 0; !fits(scale, few_) && !stopped_; scale /= step) {
       too_large_ = scale;
@@ -77,32 +79,33 @@ class Search {
     return packing;
   }
 
-  /// On which the tightest arrangement that is found of few spheres leaves a little play. The stage finds the
-  /// same one, as it searches by the same seed. Nothing where they are not few, where the stages do not
-  /// search that way, and where sizes have no end or gaps around them that do not grow with them.
-  std::optional<double> scale_of_few() {
+  /// Whether they are as large as the tightest arrangement that is found of few spheres allows, but for a
+  /// little play. The scene of the result searches for it by the same seed, and so finds it again. Not where
+  /// they are not few, where the stages do not search that way, and where sizes have no end or gaps around
+  /// them that do not grow with them.
+  bool few_fit() {
     const Scene& scene = plan_.scene;
     const auto count = static_cast<std::size_t>(*scene.target.count);
-    if (!packs_few(scene) || needs_room(plan_) || !scene.draw || !std::isfinite(plan_.radii->max()))
-      return {};
+    if (!is_searched_once(plan_) || !scene.draw) return false;
     const Frame frame = frame_of(plan_.domain);
     const std::shared_ptr<const Container> container =
         plan_.container ? plan_.container : make_local_container(plan_.domain, frame, scene.walls);
-    if (!are_few(count, *container)) return {};
+    if (!are_few(count, *container)) return false;
     const std::uint64_t seed = *sub_options(0).seed;
     Supply supply({*plan_.radii, scene.dimension(), seed, *scene.draw}, volume_of(plan_.domain),
                   scene.target);
     supply.divide_by(frame.scale);
-    const FewPacked packed =
+    FewPacked packed =
         pack_few(supply.radii(), *container, Places(*container),
                  {.enough = std::numeric_limits<double>::infinity(),
                   .seed = seed,
                   .monitor = options_.monitor,
                   .tell = [&](double done, double size) { tell(std::max(size, 1e-3) * scene.scale, done); }});
     minima_of_few_ = packed.minima;
+    const double size = (1 - play) * packed.size - gap_of_few(*container) / supply.smallest();
+    const bool all_stand = size > 0 && fits(size * scene.scale, 1, std::move(packed.centers));
     stopped_ = packed.cancelled;
-    if (!(packed.size > 0)) return {};
-    return (1 - play) * packed.size * scene.scale;
+    return all_stand;
   }
 
   /// Steps up until few seeds place no spheres that large, each twice the one before but the largest, and
@@ -122,6 +125,7 @@ class Search {
   Scene scene_at(double scale) const {
     Scene scene = plan_.scene;
     scene.largest = false;
+    scene.seed = *sub_options(winner_).seed;  // by which it is built
     scene.scale = 1;
     if (auto* one = std::get_if<Constant>(&scene.sizes))
       one->value *= scale;
@@ -139,15 +143,20 @@ class Search {
             .engine_folder = options_.engine_folder};
   }
 
-  /// Whether one of so many seeds places all spheres; keeps its packing.
-  bool fits(double scale, int tries) {
-    tell(scale, tries == many_ ? 0.7 : share_halved());
-    const std::optional<Plan> plan = made_plan_where_all_fit(scene_at(scale));
+  /// Whether one of so many seeds places all spheres, or those that are few have these places; keeps its
+  /// packing.
+  bool fits(double scale, int tries, std::vector<Vector<3>> few_places = {}) {
+    if (few_places.empty()) tell(scale, tries == many_ ? 0.7 : share_halved());
+    std::optional<Plan> plan = made_plan_where_all_fit(scene_at(scale));
     if (!plan) return false;
     for (int n = 0; n < tries && !stopped_; ++n) {
       // First the one that placed the largest so far: it is likely to place larger ones.
       const int seed = n == 0 ? winner_ : n <= winner_ ? n - 1 : n;
-      last_ = run(*plan, sub_options(seed));
+      RunOptions options = sub_options(seed);
+      plan->scene.seed = *options.seed;
+      if (n > 0 && !all_may_fit(*plan)) continue;
+      if (!few_places.empty()) options.monitor = {};  // they need no time any more
+      last_ = run_spheres(*plan, options, few_places);
       ++runs_;
       stopped_ = last_->outcome == Outcome::cancelled;
       if (!is_packed(last_->outcome)) continue;
@@ -175,6 +184,7 @@ class Search {
         "{} of {}, {} {} placed", n == 1 ? "the sphere" : grouped(n) + " spheres", size_in_words(*fitting_),
         n == 1 ? "as large as it fits," : "the largest found,", n == 1 ? "is" : "are");
     if (stopped_) return "stopped by the user: " + text + ", and larger ones may fit";
+    if (minima_of_few_ > 0 && n == 1) return text;
     if (minima_of_few_ > 0)
       return text +
              fmt::format("; of {} arrangements none had room for larger ones", grouped(minima_of_few_));

@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "bernal/soft/relax.hpp"
 #include "jam/few_spheres.hpp"
+#include "plan/few_large.hpp"
 #include "plan/stages.hpp"
 #include "work/exact_fit.hpp"
 
@@ -55,13 +55,6 @@ StageEnd run_in_box(const Stage& stage, const std::optional<BedKeepsake>& bed, S
 }
 
 }  // namespace
-
-bool packs_few(const Scene& scene) {
-  const Stage& last = scene.stages.back();
-  const StageTraits& traits = table_of(last).traits;
-  if (scene.is_periodic() || scene.target.bed.is_asked() || !traits.stands_in_bed(scene)) return false;
-  return scene.dimension() == 2 ? traits.reaches == Reaches::settled : last.as<Relax>() != nullptr;
-}
 
 StageEnd run_stages(const Scene& scene, SpheresOfRun& spheres, Reporter& report, Checkpoints& checkpoints,
                     std::optional<Pressing>& pressed) {
@@ -117,8 +110,7 @@ StageEnd run_stages(const Scene& scene, SpheresOfRun& spheres, Reporter& report,
   // Discs are relaxed by no stage.
   const auto* in_bed_last = bed_of(spheres);
   const std::size_t settled = in_bed_last ? in_bed_last->size() : 0;
-  if (in_bed_last && end != StageEnd::cancelled && scene.dimension() == 2 && packs_few(scene) &&
-      (!scene.target.is_open() || scene.target.fill))
+  if (in_bed_last && end != StageEnd::cancelled && scene.dimension() == 2 && packs_few(scene))
     end = place_few(end, std::get<SpheresInBed>(spheres), report);
   if (end != StageEnd::cancelled) {
     auto* in_box = std::get_if<SpheresInBox>(&spheres);

@@ -15,9 +15,4 @@ namespace bernal {
 StageEnd run_stages(const Scene& scene, SpheresOfRun& spheres, Reporter& report, Checkpoints& checkpoints,
                     std::optional<Pressing>& pressed);
 
-/// Whether stages that place fewer spheres than a count asks for end with a search for an arrangement of all,
-/// where these are few: relaxation in a container last, and in the plane what settles last, but no bed, whose
-/// spheres are to rest. See `place_few`.
-bool packs_few(const Scene& scene);
-
 }  // namespace bernal

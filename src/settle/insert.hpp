@@ -31,6 +31,10 @@ double full_lattice(const EmptyBed& bed);
 /// Error{bad_scene} where it does not divide the container's periods, with the nearest that it divides, and
 /// for a spacing below the largest diameter. Cost: O(1) a site, for up to some dozen ways.
 StageEnd insert_crystal(const Insert& options, SpheresInBed& in_bed, Reporter& report);
+/// The sites that it takes: those of that crystal with room for the largest sphere beside what is in the bed.
+/// Throws Cancelled too.
+std::vector<Vector<3>> crystal_sites(const Insert& options, const SpheresInBed& in_bed,
+                                     const Monitor& monitor);
 /// The same in a periodic box of given size, of which it has to divide the periods.
 StageEnd insert_crystal_in_box(const Insert& options, SpheresInBox& in_box, Reporter& report);
 /// How much denser it is than random packings of equal spheres, in a periodic box; below 1 where it is

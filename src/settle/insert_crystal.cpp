@@ -165,17 +165,20 @@ void complete_insert(Insert& insert, Scene& scene, const schema::Section& sectio
   insert.packing_fraction = insert.until();
 }
 
+std::vector<Vector<3>> crystal_sites(const Insert& options, const SpheresInBed& in_bed,
+                                     const Monitor& monitor) {
+  const double r = in_bed.task.frame.scale * in_bed.supply->largest();
+  return sites_asked(options, ground_of(in_bed), r,
+                     [&](const Crystal& crystal) { return free_sites(in_bed, crystal, r, monitor); });
+}
+
 StageEnd insert_crystal(const Insert& options, SpheresInBed& in_bed, Reporter& report) {
   const EffectTimer timer(report.effects["insertion"]);
   Bed& bed = in_bed.bed();
   Supply& supply = *in_bed.supply;
   const auto is_done = [&] { return supply.exhausted() || bed.packing_fraction() >= options.until(); };
   if (is_done()) return StageEnd::converged;
-  const double r = in_bed.task.frame.scale * supply.largest();
-  const CrystalSites sites = sites_asked(options, ground_of(in_bed), r, [&](const Crystal& crystal) {
-    return free_sites(in_bed, crystal, r, report.monitor);
-  });
-  for (const Vector<3>& site : sites) {
+  for (const Vector<3>& site : crystal_sites(options, in_bed, report.monitor)) {
     if (is_done()) break;
     if (report.monitor.stop()) return StageEnd::cancelled;
     const std::uint32_t tag = supply.window().front();

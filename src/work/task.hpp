@@ -42,6 +42,8 @@ struct Task {
   /// A place within some roundings of this one at which a sphere of that radius lies inside the domain of the
   /// scene, touching allowed: for those that the walls leave no room. Set by the run.
   std::function<std::optional<Vector<3>>(const Vector<3>& place, double r)> exact_place = {};
+  /// Places of few spheres, all that are asked for, with room for each: found before the run. None: empty.
+  std::vector<Vector<3>> few_places = {};
 
   // ---- in a box
 

@@ -134,5 +134,37 @@ class Meshes(Table):
         self.assertEqual((self.folder / "meshes.md").read_text().count("\n| column"), 2)
 
 
+class World(unittest.TestCase):
+    def test_every_topic_but_what_may_not_be_handed_on_is_compared(self):
+        ended = subprocess.run([HERE.parent / "validation/world", "--quick", "--bernal", COMMAND], capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        lines = ended.stdout.splitlines()
+        self.assertEqual({line.split(":")[0] for line in lines},
+                         {"equal", "growth", "finney", "pebbles", "polydispersity", "exchange", "four sizes", "columns", "records"})
+        self.assertIn("pebbles: overlapping pairs among 67 pebbles: 63, published 63, holds", lines)
+
+
+class Records(Table):
+    def table_of(self, *words):
+        records = self.folder / "held.csv"
+        records.write_text("ball,2,0.5\ncube,3,0.58578643762690\nsquare,4,0.25\n")
+        subprocess.run([HERE / "records_table", "--bernal", COMMAND, "--records", records, "-o", self.folder, *words],
+                       check=True, stdout=subprocess.DEVNULL)
+        with open(self.folder / "records.csv") as file:
+            return list(csv.DictReader(file))
+
+    def test_rows_are_shares_of_the_records_and_are_kept(self):
+        rows = self.table_of("--only", "ball", "--least", "2", "--most", "2")
+        rows += self.table_of("--only", "cube", "--least", "3", "--most", "3")[1:]
+        self.assertEqual(self.table_of("--only", "square", "--least", "3", "--most", "4")[:2], rows)
+        for row in self.table_of("--page"):
+            held = (row["container"], row["n"]) != ("square", "3")
+            self.assertEqual((row["share"], row["counted"]), ("1.000000", "1") if held else ("", ""), row)
+            self.assertEqual(row["play"], "1e-09", row)
+        page = (self.folder / "records.md").read_text()
+        self.assertIn("Missed: none.", page)
+        self.assertIn("| Discs in a square | 4 to 4, 1 |", page)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -20,6 +20,7 @@
 #include "jam/few_spheres.hpp"
 #include "jam/lattice_places.hpp"
 #include "jam/quasi_newton.hpp"
+#include "jam/symmetric_places.hpp"
 
 namespace bernal {
 namespace few_spheres_test {
@@ -79,8 +80,8 @@ std::string sized(double radius, const std::string& count = {}) {
   return (count.empty() ? "" : "count = " + count + "\n") + "radius = " + fmt::format("{:.17g}", radius);
 }
 
-Packing packed(const std::string& toml) {
-  Packing packing = run(build(parse_scene(toml, "scene.toml")));
+Packing packed(const std::string& toml, const Monitor& monitor = {}) {
+  Packing packing = run(build(parse_scene(toml, "scene.toml")), {.monitor = monitor});
   EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
   return packing;
 }
@@ -105,6 +106,125 @@ TEST(FewSpheres, AreAsLargeAsIsKnown) {
     ASSERT_EQ(packing.spheres.size(), known.count);
     EXPECT_NEAR(packing.spheres.r.front() / known.radius, 1, 1e-9) << packing.reason;
   }
+}
+
+/// And one sphere alone, which touches all that is nearest to its place.
+TEST(FewSpheres, AreAsLargeAsIsKnownWhereverTheContainerLies) {
+  const std::string far_ball = "kind = \"sphere\"\nradius = 1\ncenter = [300, -200, 100]\n",
+                    farther = "kind = \"sphere\"\nradius = 1\ncenter = [2e5, 0, 1e5]\n",
+                    far_cube = "kind = \"box\"\nsize = [2, 2, 2]\ncorner = [0.1, 700.3, -1e4]\n",
+                    far_tin =
+                        "kind = \"cylinder\"\nradius = 1\nheight = 2\naxis = [1, 2, 3]\n"
+                        "base = [3000, 0.1, 77]\n",
+                    triangle = "kind = \"polygon\"\nvertices = [[0, 0], [4, 0], [0, 3]]\n";
+  const double two = std::sqrt(2.0);
+  const std::vector<Known> all = {{far_ball, 13, 1.0 / 3},
+                                  {farther, 6, two - 1},
+                                  {far_cube, 14, two - 1},
+                                  {far_tin, 2, 2 - two},
+                                  {far_ball, 1, 1},
+                                  {far_tin, 1, 1},
+                                  {"kind = \"box\"\nsize = [1, 2, 3]\n", 1, 0.5},
+                                  {triangle, 1, 1}};
+  for (const Known& known : all) {
+    SCOPED_TRACE(known.container + std::to_string(known.count));
+    const std::string count = "count = " + std::to_string(known.count) + "\n";
+    const Packing largest = packed(scene_in(known.container, count + "radius = \"largest\""));
+    EXPECT_EQ(largest.outcome, Outcome::converged) << largest.reason;
+    EXPECT_EQ(largest.reason.find("seeds"), std::string::npos) << largest.reason;
+    // At 2e5 a coordinate is good to 1.5e-11.
+    const bool rounds = known.container == farther;
+    EXPECT_NEAR(largest.spheres.r.front() / known.radius, 1, rounds ? 1e-8 : 1e-9);
+    const double play = rounds ? 1e-8 : 1e-9;
+    const Packing counted =
+        packed(scene_in(known.container, sized((1 - play) * known.radius, std::to_string(known.count))));
+    EXPECT_EQ(counted.spheres.size(), known.count) << counted.reason;
+  }
+}
+
+/// Eighty in a box that they divide, without any play, and as far as an arrangement is for the search to
+/// find.
+TEST(FewSpheres, OfABoxThatTheyDivideFillIt) {
+  const std::string box = "kind = \"box\"\nsize = [10, 4, 2]\n", corner = "corner = [1, -20, 300]\n";
+  for (const std::string& container : {box, box + corner}) {
+    EXPECT_EQ(packed(scene_in(container, sized(0.5, "80"))).spheres.size(), 80U);
+    EXPECT_GE(packed(scene_in(container, sized(0.5))).spheres.size(), 80U);
+    EXPECT_EQ(packed(scene_in(container, sized(0.5 * (1 - 1e-9), "80"))).spheres.size(), 80U);
+  }
+  EXPECT_GE(packed(scene_in(box, "count = 80\nradius = \"largest\"")).spheres.r.front(), 0.5 * (1 - 1e-9));
+  EXPECT_EQ(packed(scene_in("kind = \"box\"\nsize = [5, 3]\n", sized(0.5, "15"))).spheres.size(), 15U);
+}
+
+/// Denser than any of one size: two on the diameter of a ball.
+TEST(FewSpheres, OfSeveralSizesMayFillMoreThanEqualOnes) {
+  const Packing packing =
+      packed(scene_in(ball, "radius = { distribution = \"list\", values = [0.95, 0.0499999999] }"));
+  EXPECT_EQ(packing.spheres.size(), 2U) << packing.reason;
+  EXPECT_GT(packing.packing_fraction(), 0.85);
+}
+
+/// It is the largest that is drawn that has to fit, and not the largest that might be.
+TEST(FewSpheres, OfSizesWithAnEndGrowUntilThoseThatAreDrawnDoNotFit) {
+  const Packing packing = packed(scene_in(
+      ball,
+      "count = 3\nradius = { distribution = \"normal\", mean = 0.2, sd = 0.05, min = 0.1, max = 2 }\n"
+      "scale = \"largest\""));
+  EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+  EXPECT_GT(packing.scene.scale * 2, 1) << packing.reason;  // the largest that might be drawn does not fit
+  EXPECT_NEAR(found(packing.spheres.r, *made(Sphere{})).size, 1, 1e-9);
+  const Packing again = packed(scene_as_toml(packing.scene));
+  EXPECT_EQ(again.spheres.x, packing.spheres.x);
+}
+
+TEST(FewSpheres, OfASearchThatIsCutShortAreTheLargestSoFar) {
+  int asked = 0;
+  Monitor monitor;
+  monitor.cancelled = [&] { return ++asked > 20; };
+  const Packing packing = packed(scene_in(ball, "count = 30\nradius = \"largest\""), monitor);
+  EXPECT_EQ(packing.outcome, Outcome::cancelled);
+  ASSERT_EQ(packing.spheres.size(), 30U) << packing.reason;
+  EXPECT_GT(packing.spheres.r.front(), 0.24);
+  EXPECT_TRUE(packing.reason.starts_with("stopped by the user: 30 spheres of radius")) << packing.reason;
+  EXPECT_TRUE(packing.reason.ends_with("larger ones may fit")) << packing.reason;
+}
+
+TEST(FewSpheres, ThatStandStayWhereTheSearchForMoreIsCutShort) {
+  bool searches = false;
+  Monitor monitor;
+  monitor.on_progress = [&](const Progress& progress) { searches = searches || progress.activity == "few"; };
+  monitor.cancelled = [&] { return searches; };
+  const Packing packing = packed(scene_in(ball, sized(0.2095, "61")), monitor);
+  EXPECT_TRUE(searches);
+  EXPECT_EQ(packing.outcome, Outcome::cancelled);
+  EXPECT_GT(packing.spheres.size(), 40U) << packing.reason;
+}
+
+/// So many times the radii that it is searched for, in whatever unit.
+TEST(FewSpheres, AreToldOfInTheSizeThatTheyHave) {
+  for (const double r : {1.0, 0.01, 300.0}) {
+    std::vector<double> told;
+    const Monitor monitor;
+    const auto container = made(Sphere{});
+    const FewPacked packed = pack_few(std::vector<double>(20, r), *container, Places(*container),
+                                      {.enough = std::numeric_limits<double>::infinity(),
+                                       .effort = 0.2,
+                                       .monitor = monitor,
+                                       .tell = [&](double, double size) { told.push_back(size); }});
+    ASSERT_FALSE(told.empty());
+    EXPECT_LE(told.back(), packed.size);
+    EXPECT_GT(told.back(), 0.9 * packed.size);
+  }
+}
+
+/// Of more than are likely to fit; the others are placed without a search.
+TEST(FewSpheres, ArePricedWithTheirSearch) {
+  const auto seconds = [](const std::string& spheres) {
+    return build(parse_scene(scene_in(ball, spheres), "scene.toml")).expected_seconds;
+  };
+  EXPECT_GT(seconds(sized(0.2095, "61")), 1);
+  EXPECT_GT(seconds("count = 61\nradius = \"largest\""), 1);
+  EXPECT_LT(seconds("count = 61\nradius = \"largest\""), 20);
+  EXPECT_LT(seconds(sized(0.1, "61")), 0.5);
 }
 
 TEST(FewSpheres, OfABedRestAndAreNotSearchedFor) {
@@ -132,7 +252,8 @@ TEST(FewSpheres, AreAsManyAsFitWhereNoCountIsAskedFor) {
                                                           {{cube, 8, 0.5 * (1 - 1e-9)}, ""},
                                                           {{ball, 2, 0.5 * (1 - 1e-9)}, ""},
                                                           {{ball, 13, (1 - 1e-9) / 3}, ""},
-                                                          {{square, 9, (1 - 1e-9) / 6}, "fill = true\n"}};
+                                                          {{square, 9, (1 - 1e-9) / 6}, "fill = true\n"},
+                                                          {{square, 10, 0.1482}, ""}};
   for (const auto& [known, target] : all) {
     SCOPED_TRACE(known.container + target);
     const Packing packing = packed(scene_in(known.container, target + sized(known.radius)));
@@ -220,6 +341,33 @@ TEST(LatticePlaces, AreSoManyInside) {
         }
       }
   }
+}
+
+/// No two in one place; and none in a triangle without symmetry.
+TEST(SymmetricPlaces, AreSoManyInsideOfWhatHasTheirSymmetry) {
+  Random random(3, stream(Stream::test));
+  for (const Domain& domain : {Domain(Sphere{}), Domain(Cylinder{}), Domain(Box{})}) {
+    const auto container = made(domain);
+    const Places in_container(*container);
+    for (const std::size_t count : {5u, 38u, 63u}) {
+      int found = 0;
+      const double r = std::cbrt(0.1 * container->volume() / static_cast<double>(count));
+      for (int k = 0; k < 40; ++k) {
+        const auto places = symmetric_places(*container, in_container, count, r, random);
+        if (!places) continue;
+        ++found;
+        ASSERT_EQ(places->size(), count);
+        for (std::size_t i = 0; i < count; ++i) {
+          EXPECT_GT(container->clearance((*places)[i]), 0);
+          for (std::size_t j = 0; j < i; ++j) EXPECT_GT(((*places)[i] - (*places)[j]).norm(), 0.1 * r);
+        }
+      }
+      EXPECT_GT(found, 0) << count;
+    }
+  }
+  const auto triangle = made(Polygon{{{{0, 0}, {4, 0}, {0, 3}}}});
+  const Places in_triangle(*triangle);
+  for (int k = 0; k < 40; ++k) EXPECT_FALSE(symmetric_places(*triangle, in_triangle, 6, 0.1, random));
 }
 
 /// Rosenbrock's valley, whose floor is a parabola, and a bowl with axes from 1 to 1,000.

@@ -100,7 +100,8 @@ TEST(ThinContainers, ATubeAsThickAsItsSpheresHoldsSome) {
 
 /// One sphere of the three that were expected.
 TEST(ThinContainers, AreNotFilledByFarFewerThanExpected) {
-  const Packing packing = run(plan_in("kind = \"sphere\"\nradius = 1.0\n"));
+  EXPECT_EQ(run(plan_in("kind = \"sphere\"\nradius = 1.0\n")).spheres.size(), 2U);  // touching
+  const Packing packing = run(plan_in("kind = \"sphere\"\nradius = 0.999\n"));
   EXPECT_NE(packing.outcome, Outcome::converged) << packing.reason;
   EXPECT_NE(packing.reason.find("expected"), std::string::npos) << packing.reason;
 }

@@ -21,7 +21,7 @@ struct Grow {
   /// In the default schedule, while the packing forms: growth rate of the volume-weighted mean diameter over
   /// the thermal speed. Weighted by volume because the large spheres must not grow too fast for the others.
   double rate = 0.01;
-  /// Compressibility factor P V / N k T at which spheres count as jammed.
+  /// Compressibility factor P V / N k T at which spheres count as jammed, once slower growth adds nothing.
   double pressure = 1e6;
   /// With masses by volume large spheres are heavy; wide size distributions then pack denser.
   Masses masses = Masses::equal;
