@@ -242,6 +242,10 @@ double coverable_share(const Container& container, double r) {
   return static_cast<double>(covered) / static_cast<double>(inside.size());
 }
 
+double reached_between_walls(const Scene& scene, const Box& box, const SizeDistribution& radii) {
+  return reached_by_relaxation(box, radii, part_to_fill(scene, box, {}));
+}
+
 double close_packing_fraction(const SizeDistribution& radii, int dimension) {
   if (dimension == 1) return in_line;
   return dimension == 3 ? predict_packing_fraction(radii).phi : random_close_packing[dimension - 1];

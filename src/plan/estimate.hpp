@@ -22,6 +22,9 @@ double coverable_share(const Container& container, double r);
 double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
                                  const std::shared_ptr<const Container>& made = {});
 
+/// What relaxation reaches in a box that has walls along some axes, or all, of what sizes reach without.
+double reached_between_walls(const Scene& scene, const Box& box, const SizeDistribution& radii);
+
 /// Takes the height that the scene gives the bed. Throws Error{bad_scene} where the container has it not, or
 /// no room is in it for the largest spheres, or gaps contradict its density.
 void set_height_of_bed(Plan& plan);

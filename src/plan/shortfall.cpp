@@ -19,6 +19,9 @@ namespace {
 
 /// More than the model has been found above packings of any sizes that have room enough and time.
 constexpr double loose_below = 0.05;
+/// The packing fraction of equal spheres, for which that was found; where others pack to less, as in more
+/// dimensions, it is as large a share of theirs.
+constexpr double equal_spheres = random_close_packing[2];
 /// Over the number of spheres: few of them jam in the lattice that the box allows, or where chance has it. By
 /// how much they missed the model: 5 equal spheres by 0.163, 1 by 0.120, 30 by up to 0.033; relaxed as
 /// quickly as can be, 120 lognormal ones by 0.072 and 200 by 0.062.
@@ -33,9 +36,9 @@ constexpr double one_size = 1e-3;
 /// (Farr 2013, figure 2).
 constexpr double tested_width = 0.6;
 
-double sum_of_volumes(const std::vector<double>& radii) {
+double sum_of_volumes(const std::vector<double>& radii, int dimension) {
   double sum = 0;
-  for (const double r : radii) sum += ball_volume(3, r);
+  for (const double r : radii) sum += ball_volume(dimension, r);
   return sum;
 }
 
@@ -67,10 +70,18 @@ double width_by_volume(const std::vector<double>& radii) {
   return std::sqrt(std::max(0.0, squares / volume - std::pow(sum / volume, 2)));
 }
 
+/// A box that repeats itself, along one axis at least, in dimensions of which close packing was measured.
 const Box* box_of(const Packing& packing) {
   const Box* box = std::get_if<Box>(&packing.domain);
-  const bool is_known = box && box->dimension() == 3 && !box->has_walls() && packing.scene.is_periodic();
+  const bool is_known = box && box->dimension() >= 2 && box->dimension() <= 6 && packing.scene.is_periodic();
   return is_known && !packing.spheres.empty() ? box : nullptr;
+}
+
+/// Close packing of these sizes, less what walls cost.
+double expected_in(const Box& box, const Scene& scene, std::vector<double> radii) {
+  const std::unique_ptr<SizeDistribution> sizes = sizes_there(std::move(radii));
+  if (!box.has_walls()) return close_packing_fraction(*sizes, box.dimension());
+  return reached_between_walls(scene, box, *sizes);
 }
 
 /// The least of what the packing was to reach, whatever its sizes.
@@ -78,10 +89,10 @@ double asked_of(const Packing& packing, const Plan& plan) {
   const Scene& scene = plan.scene;
   double asked = scene.target.packing_fraction.value_or(1);
   if (scene.target.count && !plan.box_follows)
-    asked = std::min(asked, sum_of_volumes(packing.spheres.r) / volume_of(plan.domain));
+    asked = std::min(asked, sum_of_volumes(packing.spheres.r, scene.dimension()) / volume_of(plan.domain));
   asked = std::min(asked, reached_by_last(scene));
   if (!plan.start.spheres.empty()) {  // a dense one is relaxed from there, a loose one is packed anew
-    const double there = sum_of_volumes(plan.start.spheres.r) / plan.start.edges.prod();
+    const double there = sum_of_volumes(plan.start.spheres.r, scene.dimension()) / plan.start.edges.prod();
     if (there >= dense_start_from) asked = std::min(asked, there);
   }
   return asked;
@@ -92,7 +103,8 @@ double asked_of(const Packing& packing, const Plan& plan) {
 double ordinarily_attainable(const Plan& plan) {
   const double at_hand = plan.attainable_packing_fraction / gain_of_stages(plan.scene, *plan.radii);
   const bool all_drawn = plan.scene.draws() && plan.start.spheres.empty() && coat_of(plan.scene) == 0;
-  return all_drawn ? std::max(at_hand, close_packing_fraction(*plan.radii, 3)) : at_hand;
+  if (!all_drawn || has_walls(plan.domain)) return at_hand;
+  return std::max(at_hand, close_packing_fraction(*plan.radii, plan.scene.dimension()));
 }
 
 double error_of(const Plan& plan) {
@@ -100,9 +112,9 @@ double error_of(const Plan& plan) {
 }
 
 /// Of the volume that was asked for, what is in spheres larger than all that are there.
-double share_above(const SizeDistribution& radii, double largest) {
+double share_above(const SizeDistribution& radii, double largest, int dimension) {
   constexpr double rounding = 1 + 1e-9;
-  return radii.moment_above(3, rounding * largest) / radii.moment(3);
+  return radii.moment_above(dimension, rounding * largest) / radii.moment(dimension);
 }
 
 /// What of the sizes makes it less dense: others than were asked for, or too few of the largest.
@@ -136,19 +148,21 @@ std::string causes_of(const Packing& packing, const Plan& plan) {
 
 }  // namespace
 
-bool is_loose(double below, std::uint64_t n) {
-  return below > loose_below + chance_of_few / static_cast<double>(n);
+bool is_loose(double below, double expected, std::uint64_t n) {
+  return below >
+         (loose_below + chance_of_few / static_cast<double>(n)) * std::min(1.0, expected / equal_spheres);
 }
 
 std::optional<double> expected_of_sizes(const Packing& packing) {
-  if (!box_of(packing)) return {};
+  const Box* const box = box_of(packing);
+  if (!box) return {};
   const std::vector<double>& radii = packing.spheres.r;
   const double coat = coat_of(packing.scene);
-  if (coat == 0) return close_packing_fraction(*sizes_there(radii), 3);
+  if (coat == 0) return expected_in(*box, packing.scene, radii);
   std::vector<double> with_coats = radii;
   for (double& r : with_coats) r += coat;
-  const double share = sum_of_volumes(radii) / sum_of_volumes(with_coats);
-  return share * close_packing_fraction(*sizes_there(std::move(with_coats)), 3);
+  const double share = sum_of_volumes(radii, box->dimension()) / sum_of_volumes(with_coats, box->dimension());
+  return share * expected_in(*box, packing.scene, std::move(with_coats));
 }
 
 std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) {
@@ -160,7 +174,7 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
   const double error = error_of(plan);
   Shortfall shortfall{.below = expected - phi};
   if (shortfall.below > error) {
-    shortfall.is_loose = is_loose(shortfall.below, packing.spheres.size());
+    shortfall.is_loose = is_loose(shortfall.below, expected, packing.spheres.size());
     shortfall.reason = fmt::format(
         "the packing fraction, {:.4f}, is {:.3f} below the {:.3f} to be expected of these sizes: {}", phi,
         shortfall.below, expected, causes_of(packing, plan));
@@ -171,8 +185,9 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
   const double drawn = std::min(attainable, asked_of(packing, plan)) - phi;
   if (drawn <= error || attainable - of_sizes <= error) return {};
   shortfall.below = drawn;
-  shortfall.is_loose = is_loose(drawn, packing.spheres.size()) &&
-                       share_above(*plan.radii, std::ranges::max(packing.spheres.r)) > most_missing;
+  shortfall.is_loose =
+      is_loose(drawn, attainable, packing.spheres.size()) &&
+      share_above(*plan.radii, std::ranges::max(packing.spheres.r), plan.scene.dimension()) > most_missing;
   shortfall.reason = fmt::format("the packing fraction, {:.4f}, is {:.3f} below what was expected: {}", phi,
                                  drawn, fmt::join(causes_in_sizes(packing, plan), "; "));
   return shortfall;

@@ -16,17 +16,17 @@ struct Shortfall {
 };
 
 /// Whether a packing of n spheres that lacks so much of the packing fraction to be expected of it is loose.
-bool is_loose(double below, std::uint64_t n);
+bool is_loose(double below, double expected, std::uint64_t n);
 
-/// Random close packing of the very sizes that are there, in a periodic box of three dimensions without
-/// walls; nothing elsewhere. Where the scene asks for gaps, of spheres with half of them around. Cost: O(N
-/// log N), and some milliseconds.
+/// Random close packing of the very sizes that are there, in a periodic box of two to six dimensions; of
+/// other than three that of equal spheres, and between walls less what these cost. Nothing elsewhere. Where
+/// the scene asks for gaps, of spheres with half of them around. Cost: O(N log N), and some milliseconds.
 std::optional<double> expected_of_sizes(const Packing& packing);
 
 /// Holds a packing against the least of what it was to reach: `packing.expected_of_sizes`; the packing
 /// fraction that is asked for, or that the count has in the box of given size; what the stages reach of
 /// themselves, as relaxation from a loose start does; and what a start had, which relaxation may keep.
-/// Nothing where the difference is within the model's error of 0.01, or nothing is known. Precondition: the
+/// Nothing where the difference is within the error of that (`error_of_expectation`), or nothing is known. Precondition: the
 /// stages came to their end with all spheres.
 std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan);
 

@@ -158,8 +158,7 @@ void write_order(Page& page, const BondOrder& order) {
   if (order.all.spheres > 0)
     page.row("mean q<sub>6</sub>", fmt::format("{:.4f} ± {:.4f}", order.mean_q6, order.q6_error),
              "the bond order of a sphere by itself: 0.574 in fcc, 0.485 in hcp");
-  row("crystalline", order.all,
-      "; up to about one per cent of a random packing of equal spheres looks so by chance");
+  row("crystalline", order.all, "; of a random packing of equal spheres one to three per cent look so");
   if (order.near_wall) row("near the wall", *order.near_wall, " that a mean diameter or less parts from it");
   if (order.core) row("in the core", *order.core, " whose centres are there");
 }

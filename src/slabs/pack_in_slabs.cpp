@@ -186,7 +186,7 @@ class SlabRun {
                                        scene_.engine->process().slabs)
                          : fmt::format("the last stage reached its limit of {} growths with {} spheres",
                                        most_growths, grouped(drawn_.count));
-    if (!is_relaxed_ || !is_loose(expected - phi, drawn_.count)) return;
+    if (!is_relaxed_ || !is_loose(expected - phi, expected, drawn_.count)) return;
     packing.outcome = Outcome::loose;
     packing.reason += fmt::format(
         "; the packing fraction, {:.4f}, is {:.3f} below the {:.3f} to be expected of "

@@ -134,6 +134,16 @@ class Meshes(Table):
         self.assertEqual((self.folder / "meshes.md").read_text().count("\n| column"), 2)
 
 
+class World(unittest.TestCase):
+    def test_every_topic_but_what_may_not_be_handed_on_is_compared(self):
+        ended = subprocess.run([HERE.parent / "validation/world", "--quick", "--bernal", COMMAND], capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        lines = ended.stdout.splitlines()
+        self.assertEqual({line.split(":")[0] for line in lines},
+                         {"equal", "growth", "finney", "pebbles", "polydispersity", "exchange", "four sizes", "columns", "records"})
+        self.assertIn("pebbles: overlapping pairs among 67 pebbles: 63, published 63, holds", lines)
+
+
 class Records(Table):
     def table_of(self, *words):
         records = self.folder / "held.csv"

@@ -58,7 +58,8 @@ SECTIONS = [
          ("records", "Few spheres against records"), ("hard", "Hard cases"), ("starts", "Packings of others"), ("earlier", "Earlier measurements"))] +
      [(f"results/{name}", f"data/results/papers/{name}/{name}.md", title) for name, title in (
          ("zhao2007", "Zhao et al. 2007"), ("han2005", "Han et al. 2005"), ("farr2013", "Farr 2013"))] +
-     [("results/timings", "data/results/timings.md", "All timings"),
+     [("results/validation", "data/results/validation.md", "Against the published world"),
+      ("results/timings", "data/results/timings.md", "All timings"),
       ("results/relaxation", "data/results/relaxation.md", "Relaxation against the paper"),
       ("results/estimates", "data/results/estimates.md", "Estimates of explain"),
       ("results/meshes", "data/results/meshes.md", "Meshes of beds")]),
