@@ -295,8 +295,9 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   result.report = std::move(report);
   result.mesh = std::move(mesh);
   if (options.true_surface) {
-    move_linearly(read.surface,
-                  [&](const Vector<3>& v) -> Vector<3> { return factor * turned_up(v, options.up); });
+    move_linearly(
+        read.surface, [&](const Vector<3>& v) -> Vector<3> { return factor * turned_up(v, options.up); },
+        factor);
     const std::string unit = purpose.unit      ? fmt::format(" {}", name_of(*purpose.unit))
                              : read.facts.unit ? " mm"
                                                : "";

@@ -1,4 +1,8 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "bernal/geometry/mesh.hpp"
 #include "bernal/geometry/true_surface.hpp"
 
@@ -14,9 +18,15 @@ void set_deviation_bounds(TrueSurface&);
 /// all triangles of the mesh, or a face is there in part. Cost: O(n log n).
 bool restrict_to(TrueSurface&, const Mesh&);
 
-/// Replaces every point by a linear function of it.
+/// Replaces every point by a linear function of it, which makes all lengths so many times as long. Tolerances
+/// are rounded up.
 template <class Linear>
-void move_linearly(TrueSurface& surface, const Linear& to) {
+void move_linearly(TrueSurface& surface, const Linear& to, double longer) {
+  const auto lengthen = [&](double& x) {
+    if (longer != 1 && x > 0) x = std::nextafter(longer * x, std::numeric_limits<double>::infinity());
+  };
+  for (TrueSurface::Piece& piece : surface.pieces) lengthen(piece.slack);
+  for (TrueSurface::Face& face : surface.faces) lengthen(face.tolerance);
   for (TrueSurface::Patch& patch : surface.patches) {
     if (auto* swept = std::get_if<TrueSurface::Swept>(&patch)) {
       for (auto& row : swept->c)

@@ -37,9 +37,11 @@ std::string certified_walls(const Scene& scene, const Domain& domain) {
         "container.off.";
   const auto* file = std::get_if<MeshFile>(&scene.container);
   if (!file) return text;
-  if (!file->repair.empty()) text += " The walls are those of the repaired surface, not of the file's.";
   const auto* mesh = std::get_if<Mesh>(&domain);
-  if (mesh && mesh->surface) {
+  const bool is_true = mesh && mesh->surface;  // which no repair has changed
+  if (!file->repair.empty() && !is_true)
+    text += " The walls are those of the repaired surface, not of the file's.";
+  if (is_true) {
     const double tolerance = mesh->surface->largest(&TrueSurface::Face::tolerance);
     text += fmt::format(
         " The walls are the surface of the CAD file itself, which is proven to lie within {:.2g} {} of its "

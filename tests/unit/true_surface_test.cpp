@@ -157,6 +157,24 @@ class InCadFile : public ::testing::Test {
   }
 };
 
+// In micrometres a block of millimetres is known a thousand times less well, by the number.
+TEST_F(InCadFile, TolerancesFollowTheUnit) {
+  const MeshFile file{.file = path("block_fillets_bore.step"), .true_surface = true};
+  const TrueSurface mm = *read_container_mesh(file, {Unit::mm, 2}).mesh.surface;
+  const TrueSurface um = *read_container_mesh(file, {Unit::um, 2000}).mesh.surface;
+  ASSERT_EQ(um.pieces.size(), mm.pieces.size());
+  ASSERT_EQ(um.faces.size(), mm.faces.size());
+  double slack = 0;
+  for (std::size_t k = 0; k < mm.pieces.size(); ++k) {
+    EXPECT_GE(um.pieces[k].slack, 1000 * mm.pieces[k].slack);
+    EXPECT_LE(um.pieces[k].slack, 1000.0001 * mm.pieces[k].slack);
+    slack = std::max(slack, mm.pieces[k].slack);
+  }
+  EXPECT_GT(slack, 0);
+  for (std::size_t k = 0; k < mm.faces.size(); ++k)
+    EXPECT_NEAR(um.faces[k].tolerance, 1000 * mm.faces[k].tolerance, 1e-12);
+}
+
 // The bore has the radius 6 about x = y = 20, fillets and corners have the radius 3.
 TEST_F(InCadFile, ASphereTouchesAFilletABoreAndASphericalCap) {
   const Mesh block = part("block_fillets_bore.step", 2);
