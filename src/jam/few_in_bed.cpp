@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "bernal/core/text.hpp"
 #include "jam/few_spheres.hpp"
 #include "settle/insert.hpp"
 
@@ -33,7 +32,9 @@ class FewInBed {
     }
     if (cancelled_) return StageEnd::cancelled;
     if (target.is_open() && all_tried)
-      report_.account = fmt::format("of {} no arrangement was found", grouped(in_bed_.bed().size() + 1));
+      report_.account =
+          fmt::format("of {0} no arrangement was found in a short search; count = {0} searches longer",
+                      in_bed_.bed().size() + 1);
     return target.is_open() && all_tried ? StageEnd::full : end;
   }
 

@@ -70,10 +70,11 @@ double width_by_volume(const std::vector<double>& radii) {
   return std::sqrt(std::max(0.0, squares / volume - std::pow(sum / volume, 2)));
 }
 
-/// A box that repeats itself, along one axis at least, in dimensions of which close packing was measured.
+/// A box of the periodic kind in dimensions of which close packing, or what walls leave of it, was measured.
 const Box* box_of(const Packing& packing) {
   const Box* box = std::get_if<Box>(&packing.domain);
-  const bool is_known = box && box->dimension() >= 2 && box->dimension() <= 6 && packing.scene.is_periodic();
+  const bool is_known = box && box->dimension() >= 2 && box->dimension() <= (box->has_walls() ? 3 : 6) &&
+                        packing.scene.is_periodic();
   return is_known && !packing.spheres.empty() ? box : nullptr;
 }
 
@@ -180,6 +181,7 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
         shortfall.below, expected, causes_of(packing, plan));
     return shortfall;
   }
+  if (has_walls(plan.domain)) return {};
   // What is as dense as its sizes become, and these are not those that were asked for.
   const double attainable = ordinarily_attainable(plan);
   const double drawn = std::min(attainable, asked_of(packing, plan)) - phi;

@@ -19,7 +19,8 @@ struct Shortfall {
 bool is_loose(double below, double expected, std::uint64_t n);
 
 /// Random close packing of the very sizes that are there, in a periodic box of two to six dimensions; of
-/// other than three that of equal spheres, and between walls less what these cost. Nothing elsewhere. Where
+/// other than three that of equal spheres, and between walls, in two and three, less what these cost. Nothing
+/// elsewhere. Where
 /// the scene asks for gaps, of spheres with half of them around. Cost: O(N log N), and some milliseconds.
 std::optional<double> expected_of_sizes(const Packing& packing);
 

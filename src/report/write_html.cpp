@@ -207,6 +207,7 @@ void write_effects(Page& page, const Packing& packing) {
 void write_certificate(Page& page, const Report& report) {
   const Certificate& c = report.certificate;
   const bool walls = has_walls(report.packing.domain);
+  const auto* mesh = std::get_if<Mesh>(&report.packing.domain);
   page.add(
       "<h2>The certificate</h2>\n<p>After writing, <code>{}</code> was read back, and every "
       "question of "
@@ -214,10 +215,12 @@ void write_certificate(Page& page, const Report& report) {
       "ordinary "
       "arithmetic where its rounding error provably cannot change the answer, in exact arithmetic everywhere "
       "else. "
-      "Touching is allowed.</p>\n<div class=\"wide\"><table>\n",
+      "{}Touching is allowed.</p>\n<div class=\"wide\"><table>\n",
       report.files.contains("spheres.npy") ? "spheres.npy" : "spheres.csv",
       is_periodic(report.packing.domain) ? ", images in the neighbouring periods included," : "",
-      walls ? " or “does this sphere cross this piece of wall?”" : "");
+      walls ? " or “does this sphere cross this piece of wall?”" : "",
+      mesh && mesh->surface ? "About the walls, which are the CAD surface, proven bounds of it decide. "
+                            : "");
   page.row("pairs of spheres", grouped(c.pairs_tested), "near enough to need a decision");
   if (walls) {
     page.row("spheres and pieces of wall", grouped(c.walls_tested),

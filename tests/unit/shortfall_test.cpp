@@ -90,7 +90,8 @@ TEST(Shortfall, OfAGivenBoxIsWhatTheCountFillsOfIt) {
   EXPECT_TRUE(shortfall_at(equal - 0.06, open)->is_loose);
 }
 
-/// Of equal spheres in as many dimensions as close packing was measured in, as large a share of it as in three.
+/// Of equal spheres in as many dimensions as close packing was measured in, as large a share of it as in
+/// three.
 TEST(Shortfall, IsOfTwoToSixDimensions) {
   const double close[] = {0.84, equal, 0.46, 0.31, 0.20};
   for (int dimension = 2; dimension <= 6; ++dimension) {
