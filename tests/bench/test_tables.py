@@ -7,6 +7,7 @@ import math
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -136,7 +137,7 @@ class Meshes(Table):
 
 class World(unittest.TestCase):
     def test_every_topic_but_what_may_not_be_handed_on_is_compared(self):
-        ended = subprocess.run([HERE.parent / "validation/world", "--quick", "--bernal", COMMAND], capture_output=True, text=True)
+        ended = subprocess.run([sys.executable, HERE.parent / "validation/world", "--quick", "--bernal", COMMAND], capture_output=True, text=True)
         self.assertEqual(ended.returncode, 0, ended.stderr)
         lines = ended.stdout.splitlines()
         self.assertEqual({line.split(":")[0] for line in lines},

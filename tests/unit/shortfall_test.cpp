@@ -90,8 +90,8 @@ TEST(Shortfall, OfAGivenBoxIsWhatTheCountFillsOfIt) {
   EXPECT_TRUE(shortfall_at(equal - 0.06, open)->is_loose);
 }
 
-/// Of equal spheres in as many dimensions as close packing was measured in, as large a share of it as in
-/// three.
+/// Of equal spheres in as many dimensions as close packing was measured in; in four and more, where it is
+/// lower, as large a share of it as in three.
 TEST(Shortfall, IsOfTwoToSixDimensions) {
   const double close[] = {0.84, equal, 0.46, 0.31, 0.20};
   for (int dimension = 2; dimension <= 6; ++dimension) {
@@ -99,7 +99,7 @@ TEST(Shortfall, IsOfTwoToSixDimensions) {
     const Plan plan = plan_of("count = 3000\nradius = 1", "", fmt::format("dimension = {}", dimension));
     const double phi = close[dimension - 2];
     EXPECT_FALSE(shortfall_at(phi - 0.005, plan));
-    EXPECT_FALSE(shortfall_at((1 - 0.07) * phi, plan)->is_loose);
+    EXPECT_FALSE(shortfall_at((1 - 0.05) * phi, plan)->is_loose);
     EXPECT_TRUE(shortfall_at((1 - 0.09) * phi, plan)->is_loose);
   }
 }
