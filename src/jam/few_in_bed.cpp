@@ -18,10 +18,10 @@ class FewInBed {
   FewInBed(SpheresInBed& in_bed, Reporter& report)
       : in_bed_(in_bed), report_(report), gap_(gap_of_few(in_bed.bed().container())) {}
 
-  StageEnd run(StageEnd end) {
+  StageEnd run(StageEnd end, bool may_be_lattice) {
     const Target& target = in_bed_.task.target;
     const std::size_t wanted = in_bed_.supply->wanted();
-    if (in_bed_.bed().size() < wanted && of_one_size()) lay_out();
+    if (may_be_lattice && in_bed_.bed().size() < wanted && of_one_size()) lay_out();
     const std::size_t there = in_bed_.bed().size();
     if (!target.is_open() && (there == wanted || place(wanted, 1))) return StageEnd::converged;
     bool all_tried = false;
@@ -119,11 +119,11 @@ class FewInBed {
 
 }  // namespace
 
-StageEnd place_few(StageEnd end, SpheresInBed& in_bed, Reporter& report) {
+StageEnd place_few(StageEnd end, SpheresInBed& in_bed, Reporter& report, bool may_be_lattice) {
   if (end == StageEnd::cancelled || !are_few(in_bed.bed().size() + 1, in_bed.bed().container())) return end;
   const NotResumable search(report);
   const EffectTimer timer(report.effects["relaxation"]);
-  return FewInBed(in_bed, report).run(end);
+  return FewInBed(in_bed, report).run(end, may_be_lattice);
 }
 
 }  // namespace bernal

@@ -66,12 +66,12 @@ FewPacked pack_few(const std::vector<double>& radii, const Container& container,
 
 /// The end of a stage that packs a bed and ended like that: where fewer spheres stand than are asked for, or
 /// as many as fit are to be placed, and these are few, searches for an arrangement of all, and of one more
-/// than there are as long as there is one. Equal spheres are first laid out on a simple cubic lattice, which
+/// than there are as long as there is one. Equal spheres that may are first laid out on a cubic lattice, which
 /// in a box that they divide needs no play (`crystal_sites`); else gaps are `gap_of_few` at least: so it
 /// finds a place for all where the tightest arrangement leaves a play of 1e-9 and is found. One that the task
 /// brings with it is taken without a search. What stands is the start of the drawn sequence, and what stood
 /// before where the search is cut short; `Reporter::account` says that one more was tried. Returns `full` for
 /// an open target then, `converged` where all stand, else `end`.
-StageEnd place_few(StageEnd end, SpheresInBed& in_bed, Reporter& report);
+StageEnd place_few(StageEnd end, SpheresInBed& in_bed, Reporter& report, bool may_be_lattice);
 
 }  // namespace bernal

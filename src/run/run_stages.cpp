@@ -111,7 +111,7 @@ StageEnd run_stages(const Scene& scene, SpheresOfRun& spheres, Reporter& report,
   const auto* in_bed_last = bed_of(spheres);
   const std::size_t settled = in_bed_last ? in_bed_last->size() : 0;
   if (in_bed_last && end != StageEnd::cancelled && scene.dimension() == 2 && packs_few(scene))
-    end = place_few(end, std::get<SpheresInBed>(spheres), report);
+    end = place_few(end, std::get<SpheresInBed>(spheres), report, true);
   if (end != StageEnd::cancelled) {
     auto* in_box = std::get_if<SpheresInBox>(&spheres);
     if (in_box && in_box->spheres.size() == in_box->supply->wanted()) fit_exactly(*in_box);

@@ -136,8 +136,8 @@ StageEnd pour(SpheresInBed& in_bed, Reporter& report, const BedTop& top,
     poured.emplace(std::move(now));
     try {
       if (how.taps > 0 && how.finds_room) tap(*poured, of_part, how.taps, how.first_tap);
-      end = relax_in_container({.patience = how.taps > 0 ? patience_with_tapped : Relax{}.patience}, *poured,
-                               of_part);
+      end = relax_to_pour({.patience = how.taps > 0 ? patience_with_tapped : Relax{}.patience}, *poured,
+                          of_part);
     } catch (const Cancelled&) {
       end = StageEnd::cancelled;
       if (poured->bed().size() == 0) keep_what_fits(*poured);

@@ -85,4 +85,7 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& 
 /// sweep and 50 ns more for one at the wall.
 StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report);
 
+/// The same of spheres that will be a bed, and lie in it as chance has it: few do not become a lattice.
+StageEnd relax_to_pour(const Relax& options, SpheresInBed& in_bed, Reporter& report);
+
 }  // namespace bernal

@@ -282,9 +282,8 @@ bool is_dilute(const SpheresInBed& in_bed) {
                                        dilute * task.attainable * task.container->volume();
 }
 
-}  // namespace
-
-StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report) {
+StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report,
+                              bool may_be_lattice) {
   enum class Step { begin, insert, relax, finish } step = Step::begin;
   StageEnd end = StageEnd::converged;
   const Resumable part(report, "relax in container", [&](Archive& a) { a(step, end); });
@@ -305,11 +304,21 @@ StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter
       const EffectTimer timer(report.effects["relaxation"]);
       return Relaxation(in_bed, report, options).run();
     };
-    return place_few(insert_what_else_fits(in_bed, report, relax()), in_bed, report);
+    return place_few(insert_what_else_fits(in_bed, report, relax()), in_bed, report, may_be_lattice);
   };
   if (step != Step::finish) end = relaxed();
   step = Step::finish;
   return finish_in_bed(end, options.polish, in_bed, report);
+}
+
+}  // namespace
+
+StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report) {
+  return relaxed_in_container(options, in_bed, report, true);
+}
+
+StageEnd relax_to_pour(const Relax& options, SpheresInBed& in_bed, Reporter& report) {
+  return relaxed_in_container(options, in_bed, report, false);
 }
 
 }  // namespace bernal
