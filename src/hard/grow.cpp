@@ -287,8 +287,7 @@ const StageEntry& entry_of<Grow>() {
                  buys_accuracy({1e2, 1e3, 1e4, 1e6, 1e9},
                                number(&Grow::pressure, "pressure",
                                       "compressibility factor P V / N k T at which the spheres count as "
-                                      "jammed, once slower "
-                                      "growth adds nothing",
+                                      "jammed, once slower growth adds nothing",
                                       {10, 1e13})),
                  word(&Grow::masses, "masses",
                       "equal, as published; volume: as of one material, which packs denser where sizes "

@@ -80,9 +80,9 @@ class Search {
   }
 
   /// Whether they are as large as the tightest arrangement that is found of few spheres allows, but for a
-  /// little play. The scene of the result searches for it by the same seed, and so finds it again. Not where
-  /// they are not few, where the stages do not search that way, and where sizes have no end or gaps around
-  /// them that do not grow with them.
+  /// little play. The scene of the result places as many of that size, where they may lie otherwise. Not
+  /// where they are not few, where the stages do not search that way, and where sizes have no end or gaps
+  /// around them that do not grow with them.
   bool few_fit() {
     const Scene& scene = plan_.scene;
     const auto count = static_cast<std::size_t>(*scene.target.count);
