@@ -138,13 +138,6 @@ double share_of_area(const Polygon& s, std::size_t loop) {
   return (hole ? -0.5 : 0.5) * std::abs(twice_area_of(line));
 }
 
-Box periodic_box(const Vector<dynamic>& edges, const std::vector<bool>& walls) {
-  Box box{Vector<dynamic>::Zero(edges.size()), edges, walls};
-  box.periodic.resize(static_cast<std::size_t>(edges.size()), false);
-  box.periodic.flip();
-  return box;
-}
-
 int Cylinder::coordinate_axis() const {
   for (int k = 0; k < 3; ++k)
     if (axis[k] != 0 && axis[(k + 1) % 3] == 0 && axis[(k + 2) % 3] == 0) return k;
@@ -168,7 +161,7 @@ std::string name_of(const Domain& domain) {
   if (std::holds_alternative<Revolved>(domain)) return "solid of revolution";
   const auto* box = std::get_if<Box>(&domain);
   if (!box || !box->repeats()) return std::string(kind_of(domain));
-  if (!box->has_walls()) return "periodic box";
+  if (!box->has_walls()) return box->is_tilted() ? "tilted periodic box" : "periodic box";
   std::string axes;
   int walls = 0;
   for (int k = 0; k < box->dimension(); ++k)
@@ -273,48 +266,6 @@ double area_of(const Domain& domain) {
       domain);
 }
 
-template <int D>
-Boundary<D> boundary_of(const Domain& domain) {
-  Boundary<D> metric;
-  if (const auto* box = std::get_if<Box>(&domain)) {
-    for (int k = 0; k < std::min(D, box->dimension()); ++k) {
-      if (!box->repeats(k)) continue;
-      metric.edges[k] = box->size[k];
-      metric.origin[k] = box->corner[k];
-    }
-  }
-  if constexpr (D == 3) {
-    const auto* cylinder = std::get_if<Cylinder>(&domain);
-    if (cylinder && cylinder->periodic) {
-      const int k = cylinder->coordinate_axis();
-      metric.edges[k] = cylinder->height;
-      metric.origin[k] = bounds_of_cylinder(*cylinder).lower[k];
-    }
-  }
-  return metric;
-}
-#define BERNAL_INSTANTIATE(D) template Boundary<D> boundary_of(const Domain&);
-BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
-#undef BERNAL_INSTANTIATE
-
-Boundary<3> boundary_in_space(const Domain& domain) {
-  if (dimension_of(domain) == 3) return boundary_of<3>(domain);
-  const Boundary<2> own = boundary_of<2>(domain);
-  Boundary<3> boundary;
-  boundary.edges.head<2>() = own.edges;
-  boundary.origin.head<2>() = own.origin;
-  return boundary;
-}
-
-void wrap(Spheres<dynamic>& spheres, const Domain& domain) {
-  with_dimension(dimension_of(domain), EveryDimension{}, [&](auto dimension) {
-    constexpr int D = decltype(dimension)::value;
-    const Boundary<D> boundary = boundary_of<D>(domain);
-    for (std::size_t i = 0; i < spheres.size(); ++i)
-      spheres.set_center(i, boundary.wrap(Vector<D>(spheres.center(i))));
-  });
-}
-
 Frame frame_of(const Domain& shape) {
   const Bounds<3> bounds = bounds_of(shape);
   const double diagonal = bounds.diagonal();
@@ -341,7 +292,8 @@ Domain to_local(const Domain& shape, const Frame& frame) {
                                  Vector<3> size = frame.to_local(in_space(s.corner + s.size)) - lower;
                                  for (int k = 0; k < dimension; ++k)  // periods scale without rounding
                                    if (s.repeats(k)) size[k] = s.size[k] / frame.scale;
-                                 return Box{lower.head(dimension), size.head(dimension), s.periodic};
+                                 return Box{lower.head(dimension), size.head(dimension), s.periodic,
+                                            scaled(s.tilt, 1 / frame.scale)};
                                },
                                [&](Cylinder s) -> Domain {
                                  s.base = frame.to_local(s.base);

@@ -94,6 +94,7 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   measured.by_gap.pop_back();
   measured.of_contacts =
       contact_sums(spheres, domain, {options.contact_gap, options.gap, options.wall_gap, container});
+  if (options.slab) require_upright(domain, "the measurement of a slab");
   if (options.slab) measured.slab = measure_slab(*options.slab, spheres, domain, gaps, options.gap);
   try {
     const Interruptible listening(options.monitor);
@@ -102,7 +103,8 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
     BedOptions bed = options.bed;
     bed.gap = options.gap;
     bed.wall_gap = options.wall_gap;
-    measured.bed = bed_profile(spheres, domain, bed, container);
+    const bool upright = !is_tilted(domain);
+    if (upright) measured.bed = bed_profile(spheres, domain, bed, container);
     RadialOptions radial = options.radial;
     WallOptions walls = options.walls;
     PoreOptions pores = options.pores;
@@ -113,12 +115,13 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
       measured.core_contacts = contacts_of_some(core, options.gap, spheres, domain, gaps);
     ColumnOptions column{.down = options.bed.direction, .slab = options.slab, .side = options.walls};
     if (measured.bed) column.level = measured.bed->level;
-    measured.column = column_profile(spheres, domain, column);
+    if (upright) measured.column = column_profile(spheres, domain, column);
     measured.order =
         bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
-    measured.local = local_packing(spheres, domain, options.local, container);
+    if (upright) measured.local = local_packing(spheres, domain, options.local, container);
     measured.structure = structure_factor(spheres, domain, options.structure);
-    measured.pores = pore_sizes(spheres, domain, pores, container);
+    if (upright) measured.pores = pore_sizes(spheres, domain, pores, container);
+    if (!upright) measured.left_out = {"local packing fractions", "pore sizes"};
   } catch (const Cancelled&) {
     if (options.all_or_nothing) throw;
   }

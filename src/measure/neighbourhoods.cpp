@@ -19,7 +19,8 @@ constexpr std::size_t spheres_a_piece = 1024;
 template <int D>
 class NeighbourSearch {
  public:
-  NeighbourSearch(const Spheres<D>& spheres, const Boundary<D>& boundary, double gap, double contact_gap)
+  NeighbourSearch(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary, double gap,
+                  double contact_gap)
       : spheres_(spheres),
         boundary_(boundary),
         levels_(levels_of(spheres, boundary, contact_gap)),
@@ -71,13 +72,13 @@ class NeighbourSearch {
   }
 
   const Spheres<D>& spheres_;
-  const Boundary<D> boundary_;
+  const TiltedBoundary<D> boundary_;
   const std::vector<SizeLevel<D>> levels_;
   double gap_, contact_gap_, farthest_;
 };
 
 template <int D>
-Neighbourhoods look_around(const Spheres<D>& spheres, const Boundary<D>& boundary,
+Neighbourhoods look_around(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary,
                            std::span<const std::uint32_t> of, double gap, double contact_gap, double scale) {
   Neighbourhoods found{std::vector<std::uint32_t>(of.size()), std::vector<double>(of.size())};
   const NeighbourSearch<D> lookout(spheres, boundary, gap / scale, contact_gap);
@@ -102,7 +103,7 @@ Neighbourhoods neighbourhoods(const Spheres<dynamic>& spheres, const Domain& dom
   }
   return with_dimension(spheres.dimension(), std::integer_sequence<int, 2, 3>{}, [&](auto dimension) {
     constexpr int D = dimension;
-    return look_around<D>(spheres.in<D>(), boundary_of<D>(domain), of, gap, contact_gap, 1);
+    return look_around<D>(spheres.in<D>(), tilted_boundary_of<D>(domain), of, gap, contact_gap, 1);
   });
 }
 

@@ -10,19 +10,19 @@
 
 namespace bernal {
 
-/// The centres within reach of each centre. The reach is at most half of every period, so that each is
-/// visited at most once.
+/// The centres within reach of each centre. The reach is at most half of every period, and of the shortest of
+/// a tilted box, so that each is visited at most once.
 template <int D>
 class Surroundings {
  public:
-  Surroundings(const Spheres<D>& spheres, const Boundary<D>& boundary, double reach)
-      : boundary_(boundary),
+  Surroundings(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary, double reach)
+      : upright_{boundary.edges, boundary.origin},
         size_(size_of(spheres, boundary)),
         reach_(reach),
         grid_(spheres, boundary, cell_edge(spheres.size())) {
     auto in_cells = static_cast<double>(spheres.size());
     for (int k = 0; k < D; ++k) in_cells *= (2 * reach + 2 * cell_edge(spheres.size())) / size_[k];
-    by_cells_ = in_cells < static_cast<double>(spheres.size());
+    by_cells_ = in_cells < static_cast<double>(spheres.size()) || boundary.is_tilted();
     cost_ = std::min(in_cells, static_cast<double>(spheres.size()));
   }
 
@@ -43,13 +43,13 @@ class Surroundings {
       grid_.for_each_near(c, reach_, meet);
     } else {
       for (std::size_t p = 0; p < grid_.ids().size(); ++p)
-        meet(grid_.ids()[p], boundary_.minimum_image(grid_.point(p) - c));
+        meet(grid_.ids()[p], upright_.minimum_image(grid_.point(p) - c));
     }
   }
 
  private:
   /// The periods; along open axes the extent of the spheres.
-  static Vector<D> size_of(const Spheres<D>& spheres, const Boundary<D>& boundary) {
+  static Vector<D> size_of(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary) {
     Vector<D> size = boundary.edges;
     for (int k = 0; k < D; ++k) {
       if (boundary.repeats(k)) continue;
@@ -63,7 +63,7 @@ class Surroundings {
     return std::max(reach_ / 4, std::pow(size_.prod() / static_cast<double>(n), 1.0 / D));
   }
 
-  Boundary<D> boundary_;
+  Boundary<D> upright_;  // where images are not found by cells
   Vector<D> size_;
   double reach_;
   PointGrid<D> grid_;
@@ -77,8 +77,8 @@ class Surroundings {
 /// same order for any number of threads. `references` becomes the number of centres. Preconditions: there are
 /// spheres; reach at most half of every period.
 template <int D, class Tally>
-Tally tally_of_pairs(const Spheres<D>& spheres, const Boundary<D>& boundary, const Tally& empty, double work,
-                     std::uint64_t& references) {
+Tally tally_of_pairs(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary, const Tally& empty,
+                     double work, std::uint64_t& references) {
   constexpr std::size_t fewest_references = 100, references_a_part = 256;
   const std::size_t n = spheres.size();
   const Surroundings<D> surroundings(spheres, boundary, empty.reach());

@@ -200,8 +200,10 @@ std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>& sp
   radial.bin_width = options.bin * radial.mean_diameter;
   double reach = options.reach * radial.mean_diameter;
   with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
-    for (const double period : boundary_of<dimension>(domain).edges)
+    const auto boundary = tilted_boundary_of<dimension>(domain);
+    for (const double period : boundary.edges)
       if (period > 0) reach = std::min(reach, 0.5 * period);
+    if (boundary.is_tilted()) reach = std::min(reach, 0.5 * boundary.shortest_period());
   });
   const double bins = std::floor(reach / radial.bin_width + slack);
   if (!(bins >= 1)) return {};
@@ -215,8 +217,8 @@ std::optional<RadialDistribution> radial_distribution(const Spheres<dynamic>& sp
   Histogram found = empty;
   with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    found =
-        tally_of_pairs<D>(spheres.in<D>(), boundary_of<D>(domain), empty, options.work, radial.references);
+    found = tally_of_pairs<D>(spheres.in<D>(), tilted_boundary_of<D>(domain), empty, options.work,
+                              radial.references);
   });
   normalise(found.counts(), spheres.dimension(), radii, spheres.size(), volume_of(domain), radial);
   find_peaks(radial);

@@ -84,7 +84,8 @@ std::optional<SizeCorrelation::Neighbours> neighbours_of(const std::vector<NearP
 }
 
 template <int D>
-double shortest_period(const Boundary<D>& boundary) {
+double shortest_period(const TiltedBoundary<D>& boundary) {
+  if (boundary.is_tilted()) return boundary.shortest_period();
   double shortest = std::numeric_limits<double>::infinity();
   for (int k = 0; k < D; ++k)
     if (boundary.repeats(k)) shortest = std::min(shortest, boundary.edges[k]);
@@ -93,7 +94,7 @@ double shortest_period(const Boundary<D>& boundary) {
 
 /// Spheres and periods may be in any unit of length, 1 / `unit` times the scene's.
 template <int D>
-std::optional<SizeCorrelation> correlation_in(const Spheres<D>& spheres, const Boundary<D>& boundary,
+std::optional<SizeCorrelation> correlation_in(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary,
                                               double unit, const std::vector<NearPair>& bonds,
                                               const SizeCorrelationOptions& options) {
   const double mean =
@@ -146,7 +147,7 @@ std::optional<SizeCorrelation> size_correlation(const Spheres<dynamic>& spheres,
   }
   return with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    return correlation_in<D>(spheres.in<D>(), boundary_of<D>(domain), 1, bonds, options);
+    return correlation_in<D>(spheres.in<D>(), tilted_boundary_of<D>(domain), 1, bonds, options);
   });
 }
 

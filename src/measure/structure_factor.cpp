@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "bernal/core/dimension.hpp"
 #include "core/parallel.hpp"
@@ -30,11 +31,11 @@ constexpr double surely_higher = 4.5;
 /// exp(i 2π n x) of some spheres along one axis, for any n: from a table unless it would be too large.
 class Waves {
  public:
-  void fill(const std::vector<double>& x, double origin, double edge, std::size_t first, std::size_t count,
-            int largest) {
+  /// `x` in periods.
+  void fill(const std::vector<double>& x, std::size_t first, std::size_t count, int largest) {
     for (std::size_t j = 0; j < spheres_together; ++j) {
       is_there_[j] = j < count ? 1 : 0;
-      turn_[j] = j < count ? 2 * std::numbers::pi * std::remainder((x[first + j] - origin) / edge, 1.0) : 0;
+      turn_[j] = j < count ? 2 * std::numbers::pi * std::remainder(x[first + j], 1.0) : 0;
     }
     in_table_ = std::min(largest, largest_table);
     table_.resize((static_cast<std::size_t>(in_table_) + 1) * 2 * spheres_together);
@@ -80,9 +81,11 @@ class Waves {
 template <int D>
 class WaveSums {
  public:
-  WaveSums(const Spheres<D>& spheres, const Boundary<D>& boundary,
+  WaveSums(Spheres<D> spheres, const TiltedBoundary<D>& boundary,
            const std::vector<std::vector<WaveVector<D>>>& bins)
-      : spheres_(spheres), boundary_(boundary) {
+      : in_periods_(std::move(spheres)) {
+    for (std::size_t i = 0; i < in_periods_.size(); ++i)
+      in_periods_.set_center(i, boundary.in_cell_vectors(in_periods_.center(i)));
     largest_.setZero();
     for (const auto& bin : bins)
       for (const auto& vector : bin) {
@@ -93,7 +96,7 @@ class WaveSums {
 
   /// |Σ exp(i k·c)|² of every vector.
   std::vector<double> squares() const {
-    const std::size_t n = spheres_.size(), groups = (n + spheres_together - 1) / spheres_together;
+    const std::size_t n = in_periods_.size(), groups = (n + spheres_together - 1) / spheres_together;
     const std::size_t parts = std::min(groups, most_parts);
     std::vector<std::vector<std::complex<double>>> sums(parts);
     parallel_for(parts, [&](std::size_t part) {
@@ -103,8 +106,7 @@ class WaveSums {
         throw_if_interrupted();
         const std::size_t first = group * spheres_together;
         for (int k = 0; k < D; ++k)
-          waves[k].fill(spheres_.x[k], boundary_.origin[k], boundary_.edges[k], first,
-                        std::min(spheres_together, n - first), largest_[k]);
+          waves[k].fill(in_periods_.x[k], first, std::min(spheres_together, n - first), largest_[k]);
         for (std::size_t v = 0; v < vectors_.size(); ++v) sums[part][v] += sum(waves, vectors_[v]);
       }
     });
@@ -148,8 +150,7 @@ class WaveSums {
     return {sum_in_halves(re), sum_in_halves(im)};
   }
 
-  const Spheres<D>& spheres_;
-  const Boundary<D>& boundary_;
+  Spheres<D> in_periods_;
   std::vector<Eigen::Matrix<int, D, 1>> vectors_;
   Eigen::Matrix<int, D, 1> largest_;
 };
@@ -203,10 +204,9 @@ std::optional<StructureFactor> structure_factor(const Spheres<dynamic>& spheres,
   }
   with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    const Boundary<D> boundary = boundary_of<D>(domain);
-    const auto vectors = wave_vectors<D>(boundary.edges, found.bin_width, a_bin);
-    const Spheres<D> in_space = spheres.in<D>();
-    const std::vector<double> squares = WaveSums<D>(in_space, boundary, vectors).squares();
+    const TiltedBoundary<D> boundary = tilted_boundary_of<D>(domain);
+    const auto vectors = wave_vectors<D>(boundary, found.bin_width, a_bin);
+    const std::vector<double> squares = WaveSums<D>(spheres.in<D>(), boundary, vectors).squares();
     std::size_t first = 0;
     for (const auto& bin : vectors) {
       if (bin.empty()) continue;

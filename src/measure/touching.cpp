@@ -112,7 +112,8 @@ void append_pairs(const std::vector<double>& radii, std::span<const SizeLevel<D>
 
 /// A sphere much larger than its box would meet countless images.
 template <int D>
-void require_countable_images(const Spheres<D>& spheres, const Boundary<D>& boundary, double widest_gap) {
+void require_countable_images(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary,
+                              double widest_gap) {
   constexpr double most_images = 1e6;  // of a sphere; one as large as its box meets 3^D
   const double largest = spheres.empty() ? 0 : std::ranges::max(spheres.r),
                reach = 2 * (1 + widest_gap) * largest;
@@ -151,7 +152,7 @@ using Parts = std::vector<typename As::Part>;
 
 /// In consecutive parts.
 template <int D, class As>
-Parts<As> parts_among(Spheres<D> spheres, const Boundary<D>& boundary, const As& as) {
+Parts<As> parts_among(Spheres<D> spheres, const TiltedBoundary<D>& boundary, const As& as) {
   constexpr std::size_t chunk = 4096;
   require_countable_images(spheres, boundary, as.widest);
   const std::size_t most = most_pairs<D>(spheres.size(), as.widest);
@@ -205,7 +206,7 @@ Parts<As> parts_of(const Spheres<dynamic>& spheres, const Domain& domain, const 
   if (has_own_frame(domain)) return parts_in_own_frame(spheres, domain, as);
   return with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
-    return parts_among<D>(spheres.in<D>(), boundary_of<D>(domain), as);
+    return parts_among<D>(spheres.in<D>(), tilted_boundary_of<D>(domain), as);
   });
 }
 
@@ -214,7 +215,7 @@ template <class As>
 Parts<As> parts_in_space(const Spheres<dynamic>& spheres, const Domain& domain, const As& as) {
   if (spheres.empty()) return {};
   if (has_own_frame(domain)) return parts_in_own_frame(spheres, domain, as);
-  return parts_among<3>(spheres.in<3>(), boundary_of<3>(domain), as);
+  return parts_among<3>(spheres.in<3>(), tilted_boundary_of<3>(domain), as);
 }
 
 }  // namespace
@@ -236,7 +237,7 @@ Parts<As> parts_in_dimension(const Spheres<dynamic>& spheres, const Domain& doma
   if constexpr (D == 3)
     return parts_in_space(spheres, domain, as);
   else
-    return parts_among<D>(spheres.in<D>(), boundary_of<D>(domain), as);
+    return parts_among<D>(spheres.in<D>(), tilted_boundary_of<D>(domain), as);
 }
 
 }  // namespace
@@ -295,7 +296,7 @@ Parts<As> parts_in(Patch<D>&& patch, const Domain& domain, const As& as) {
 BondsInside near_directions_inside(const Spheres<dynamic>& spheres, const Domain& domain, double widest_gap,
                                    std::size_t most) {
   BondsInside inside;
-  if (spheres.size() <= most) {
+  if (spheres.size() <= most || is_tilted(domain)) {  // a patch knows upright boxes only
     inside.asked = spheres.size();
     inside.bonds = parts_in_space(spheres, domain, AsDirection{widest_gap});
     return inside;
@@ -309,7 +310,7 @@ BondsInside near_directions_inside(const Spheres<dynamic>& spheres, const Domain
 
 std::vector<NearPair> near_pairs_inside(const Spheres<dynamic>& spheres, const Domain& domain,
                                         double widest_gap, std::size_t most) {
-  if (spheres.size() <= most) return near_pairs(spheres, domain, widest_gap);
+  if (spheres.size() <= most || is_tilted(domain)) return near_pairs(spheres, domain, widest_gap);
   return with_dimension(spheres.dimension(), EveryDimension{}, [&](auto dimension) {
     constexpr int D = dimension;
     Patch<D> patch = middle_patch<D>(spheres, domain, most, bond_reach(spheres, widest_gap));

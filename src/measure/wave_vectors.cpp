@@ -29,8 +29,25 @@ bool is_representative(const Multiples<D>& n) {
 }
 
 template <int D>
-Vector<D> steps_of(const Vector<D>& edges) {
-  return (2 * std::numbers::pi * edges.cwiseInverse()).eval();
+Vector<D> steps_of(const Vector<D>& lengths) {
+  return (2 * std::numbers::pi * lengths.cwiseInverse()).eval();
+}
+
+/// The wave vector k with k·a = 2π n for each cell vector a; `step` is 2π / edge.
+template <int D>
+Vector<D> wave_of(const Multiples<D>& n, const Vector<D>& step, const TiltedBoundary<D>& boundary) {
+  Vector<D> wave = n.template cast<double>().cwiseProduct(step);
+  for (int k = 1; k < D; ++k)
+    for (int j = 0; j < k; ++j) wave[k] -= boundary.along(k, j) * wave[j] / boundary.edges[k];
+  return wave;
+}
+/// The inverse, in numbers that need not be whole.
+template <int D>
+Vector<D> multiples_of(const Vector<D>& wave, const Vector<D>& step, const TiltedBoundary<D>& boundary) {
+  Vector<D> multiples = wave.cwiseQuotient(step);
+  for (int k = 1; k < D; ++k)
+    for (int j = 0; j < k; ++j) multiples[k] += wave[j] * boundary.along(k, j) / (2 * std::numbers::pi);
+  return multiples;
 }
 
 /// The largest number of bins whose vectors are few enough to be enumerated.
@@ -79,16 +96,21 @@ void thin_out(std::vector<WaveVector<D>>& vectors, std::size_t most) {
 }  // namespace
 
 template <int D>
-std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, double width,
+std::vector<std::vector<WaveVector<D>>> wave_vectors(const TiltedBoundary<D>& boundary, double width,
                                                      const std::vector<std::size_t>& most) {
   const std::size_t bins = most.size();
-  const Vector<D> step = steps_of<D>(edges);
-  const auto length_of = [&](const Multiples<D>& n) {
-    return n.template cast<double>().cwiseProduct(step).norm();
-  };
+  const Vector<D> step = steps_of<D>(boundary.edges);
+  const auto length_of = [&](const Multiples<D>& n) { return wave_of<D>(n, step, boundary).norm(); };
+  // k·a = 2π n bounds n by the length of the cell vector a.
+  Vector<D> least_step = step;
+  if (boundary.is_tilted()) {
+    Vector<D> lengths;
+    for (int k = 0; k < D; ++k) lengths[k] = boundary.cell_vector(k).norm();
+    least_step = steps_of<D>(lengths);
+  }
   std::vector<std::vector<WaveVector<D>>> found(bins);
-  const std::size_t looked_through = bins_looked_through<D>(step, width, bins);
-  for_each_multiple<D>(step, static_cast<double>(looked_through) * width, [&](const Multiples<D>& n) {
+  const std::size_t looked_through = bins_looked_through<D>(least_step, width, bins);
+  for_each_multiple<D>(least_step, static_cast<double>(looked_through) * width, [&](const Multiples<D>& n) {
     const double length = length_of(n);
     const auto bin = static_cast<std::size_t>(length / width);
     if (bin < looked_through) found[bin].push_back({n, length});
@@ -104,7 +126,7 @@ std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, dou
     for (std::size_t k = 0; k < tries_a_vector * most[bin] && found[bin].size() < most[bin]; ++k) {
       const double wanted = (static_cast<double>(bin) + random.uniform()) * width;
       const Vector<D> direction = uniform_direction<D>(random);
-      const Vector<D> multiples = wanted * direction.cwiseQuotient(step);
+      const Vector<D> multiples = wanted * multiples_of<D>(direction, step, boundary);
       if (!(multiples.cwiseAbs().maxCoeff() < largest_multiple)) continue;
       Multiples<D> n;
       for (int axis = 0; axis < D; ++axis) n[axis] = static_cast<int>(std::nearbyint(multiples[axis]));
@@ -117,8 +139,8 @@ std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>& edges, dou
   return found;
 }
 
-#define BERNAL_INSTANTIATE(D)                                                             \
-  template std::vector<std::vector<WaveVector<D>>> wave_vectors(const Vector<D>&, double, \
+#define BERNAL_INSTANTIATE(D)                                                                     \
+  template std::vector<std::vector<WaveVector<D>>> wave_vectors(const TiltedBoundary<D>&, double, \
                                                                 const std::vector<std::size_t>&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE

@@ -22,7 +22,7 @@ std::vector<std::uint32_t> first_ids(std::size_t count) {
 }  // namespace
 
 template <int D>
-PointGrid<D>::PointGrid(const Spheres<D>& spheres, std::span<const Id> ids, const Boundary<D>& boundary,
+PointGrid<D>::PointGrid(const Spheres<D>& spheres, std::span<const Id> ids, const TiltedBoundary<D>& boundary,
                         double edge)
     : boundary_(boundary) {
   constexpr std::size_t grain = 1 << 14;
@@ -45,7 +45,7 @@ PointGrid<D>::PointGrid(const Spheres<D>& spheres, std::span<const Id> ids, cons
 }
 
 template <int D>
-PointGrid<D>::PointGrid(const Spheres<D>& spheres, const Boundary<D>& boundary, double edge)
+PointGrid<D>::PointGrid(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary, double edge)
     : PointGrid(spheres, first_ids(spheres.size()), boundary, edge) {}
 
 template <int D>
@@ -113,7 +113,10 @@ void PointGrid<D>::visit_axis(const Vector<D>& c, double squared, std::int64_t c
   // Points may lie a rounding beyond the cell that they are in, along each axis by its own: next to one
   // that is 1e19 long, that of the longest would be a multitude of cells.
   const double rounding = 1e-12 * cell_edge_[K], half = std::sqrt(squared) + rounding;
-  std::int64_t first = unwrapped(K, c[K] - half), last = unwrapped(K, c[K] + half);
+  // Whoever has left a tilted box through a higher axis is beside it along the lower ones.
+  const Vector<D> beside = shift;
+  const double here = c[K] - beside[K];
+  std::int64_t first = unwrapped(K, here - half), last = unwrapped(K, here + half);
   const std::int64_t n = cells_[K];
   const bool periodic = boundary_.edges[K] > 0;
   if (!periodic) {
@@ -123,7 +126,9 @@ void PointGrid<D>::visit_axis(const Vector<D>& c, double squared, std::int64_t c
   for (std::int64_t at = first; at <= last;) {
     const bool beyond = periodic && (at < 0 || at >= n);
     const std::int64_t turn = !beyond ? 0 : at >= 0 ? at / n : -((n - 1 - at) / n);
-    shift[K] = static_cast<double>(turn) * boundary_.edges[K];
+    const auto turns = static_cast<double>(turn);
+    shift[K] = beside[K] + turns * boundary_.edges[K];
+    for (int j = 0; j < K; ++j) shift[j] = beside[j] + turns * boundary_.along(K, j);
     if constexpr (K == 0) {  // what lies in one box is one run of points
       const std::int64_t end = std::min(last, turn * n + n - 1);
       visit(it, start_[static_cast<std::size_t>(cell * n + at - turn * n)],
@@ -131,7 +136,7 @@ void PointGrid<D>::visit_axis(const Vector<D>& c, double squared, std::int64_t c
       at = end + 1;
     } else {
       const double near = lower_[K] + static_cast<double>(at) * cell_edge_[K];
-      const double away = std::max({0.0, near - c[K] - rounding, c[K] - near - cell_edge_[K] - rounding});
+      const double away = std::max({0.0, near - here - rounding, here - near - cell_edge_[K] - rounding});
       const double rest = squared - away * away;
       if (rest > 0) visit_axis<K - 1>(c, rest, cell * n + at - turn * n, shift, it, visit);
       ++at;

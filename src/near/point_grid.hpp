@@ -11,9 +11,9 @@
 namespace bernal {
 
 /// Points sorted by the cells of a grid, so that what is near in space is near in memory: for searches among
-/// points that stay where they are, of any reach. Knows periodic axes, and visits *images*: in a box that is
-/// shorter than the reach the same point comes once for every image of it that is near, the point itself
-/// included.
+/// points that stay where they are, of any reach. Knows periodic axes, tilted boxes too, and visits *images*:
+/// in a box that is shorter than the reach the same point comes once for every image of it that is near, the
+/// point itself included.
 ///
 /// What it buys: to be filled and asked once for each point takes 0.65 of the time of a `CellGrid` for 10^4
 /// points in three dimensions, 0.5 for 10^5, a quarter in five dimensions (tests/bench/near_bench.cpp).
@@ -28,9 +28,10 @@ class PointGrid {
 
   /// The centres of the spheres `ids`. `edge` > 0 is the least edge of a cell: about the reach of the queries
   /// to come, or a third of it where a cell would hold many points.
-  PointGrid(const Spheres<D>& spheres, std::span<const Id> ids, const Boundary<D>& boundary, double edge);
+  PointGrid(const Spheres<D>& spheres, std::span<const Id> ids, const TiltedBoundary<D>& boundary,
+            double edge);
   /// The centres of all spheres.
-  PointGrid(const Spheres<D>& spheres, const Boundary<D>& boundary, double edge);
+  PointGrid(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary, double edge);
 
   /// The ids in the order of the cells: whoever asks for all of them in this order stays in the cache.
   std::span<const Id> ids() const { return ids_; }
@@ -68,7 +69,7 @@ class PointGrid {
   void visit_axis(const Vector<D>& c, double squared, std::int64_t cell, Vector<D>& shift, const void* it,
                   VisitRun visit) const;
 
-  Boundary<D> boundary_;
+  TiltedBoundary<D> boundary_;
   Vector<D> lower_ = Vector<D>::Zero();
   Vector<D> cell_edge_ = Vector<D>::Ones();
   std::array<std::int64_t, D> cells_{};

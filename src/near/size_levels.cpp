@@ -8,7 +8,7 @@
 namespace bernal {
 
 template <int D>
-std::vector<SizeLevel<D>> levels_of(const Spheres<D>& spheres, const Boundary<D>& boundary,
+std::vector<SizeLevel<D>> levels_of(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary,
                                     double widest_gap) {
   constexpr std::size_t most_levels = 1100;  // from the largest double to the smallest
   const double largest = *std::max_element(spheres.r.begin(), spheres.r.end());
@@ -29,7 +29,7 @@ std::vector<SizeLevel<D>> levels_of(const Spheres<D>& spheres, const Boundary<D>
 }
 
 #define BERNAL_INSTANTIATE(D) \
-  template std::vector<SizeLevel<D>> levels_of(const Spheres<D>&, const Boundary<D>&, double);
+  template std::vector<SizeLevel<D>> levels_of(const Spheres<D>&, const TiltedBoundary<D>&, double);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

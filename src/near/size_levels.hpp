@@ -20,7 +20,7 @@ struct SizeLevel {
 /// By size, largest first; levels without spheres are left out. The grids are for pairs up to a gap ratio of
 /// `widest_gap`. Precondition: there are spheres.
 template <int D>
-std::vector<SizeLevel<D>> levels_of(const Spheres<D>& spheres, const Boundary<D>& boundary,
+std::vector<SizeLevel<D>> levels_of(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary,
                                     double widest_gap);
 
 }  // namespace bernal

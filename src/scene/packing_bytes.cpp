@@ -14,7 +14,7 @@
 
 namespace bernal {
 
-static void archive(Archive& a, Box& box) { a(box.corner, box.size, box.periodic); }
+static void archive(Archive& a, Box& box) { a(box.corner, box.size, box.periodic, box.tilt); }
 static void archive(Archive& a, Cylinder& c) { a(c.base, c.axis, c.radius, c.height, c.periodic); }
 static void archive(Archive& a, Sphere& sphere) { a(sphere.center, sphere.radius); }
 static void archive(Archive& a, ExactCorners& exact) { a(exact.scale, exact.high, exact.low); }

@@ -17,6 +17,7 @@
 #include "verify/judge.hpp"
 #include "verify/slabs.hpp"
 #include "verify/streamed_slabs.hpp"
+#include "verify/tilted.hpp"
 
 namespace bernal {
 namespace {
@@ -151,7 +152,23 @@ verify::Tally judge_in_space(const Source& spheres, const Vector<dynamic>& perio
   return judge_in<3>(verify::PeriodicSpace<3>{periods}, spheres, domain, job);
 }
 
+/// All of them in memory.
+Spheres<dynamic> spheres_in(const SphereRows& rows) {
+  constexpr std::uint64_t piece = 4096;
+  Spheres<dynamic> spheres(rows.dimension);
+  spheres.resize(static_cast<std::size_t>(rows.count));
+  const auto width = static_cast<std::size_t>(rows.dimension) + 1;
+  verify::for_each_piece(rows, piece, [&](std::uint64_t first, std::span<const double> values) {
+    for (std::size_t at = 0; at < values.size(); ++at) {
+      const std::size_t i = static_cast<std::size_t>(first) + at / width;
+      (at % width + 1 == width ? spheres.r : spheres.x[at % width])[i] = values[at];
+    }
+  });
+  return spheres;
+}
+
 verify::Tally judge(const SphereRows& spheres, const Domain& domain, const verify::Job& job) {
+  if (is_tilted(domain)) return verify::judge_tilted(spheres_in(spheres), std::get<Box>(domain), job);
   const Vector<dynamic> periods = verify::periods_of(domain);
   if (periods.size() == 3) return judge_in_space(spheres, periods, domain, job);
   std::optional<verify::Tally> tally;
@@ -165,6 +182,7 @@ verify::Tally judge(const SphereRows& spheres, const Domain& domain, const verif
 /// In other than three dimensions as rows, so that one kind of slabs is enough there.
 verify::Tally judge(const Spheres<dynamic>& spheres, const Domain& domain, const verify::Job& job) {
   const int dimension = spheres.dimension();
+  if (is_tilted(domain)) return verify::judge_tilted(spheres, std::get<Box>(domain), job);
   if (dimension == 3) return judge_in_space(spheres, verify::periods_of(domain), domain, job);
   const auto read = [&](std::uint64_t first, std::span<double> rows) {
     for (std::size_t at = 0; at < rows.size(); ++first) {

@@ -5,6 +5,7 @@
 
 #include "core/every_dimension.hpp"
 #include "verify/predicates.hpp"
+#include "verify/record_pair.hpp"
 
 namespace bernal::verify {
 namespace {
@@ -58,35 +59,18 @@ class PairJudge {
   }
 
   void judge(const Ball<D>& a, const Ball<D>& b, Tally& tally) const {
-    record(a.index, b.index, distance(a, b), a.r + b.r, tally,
-           [&]<class Number>(double allowed) { return balls_clear<Number>(space_, a, b, allowed, gap_); });
+    record_pair(job_, a.index, b.index, distance(a, b), a.r + b.r, tally, [&]<class Number>(double allowed) {
+      return balls_clear<Number>(space_, a, b, allowed, gap_);
+    });
   }
 
   /// Tests a ball against its nearest images, an edge away.
   void judge_own_images(const Ball<D>& ball, Tally& tally) const {
     const double edge = space_.edges.minCoeff(), diameter = 2 * ball.r;
     if (diameter + distances_known_up_to(gap_) < edge) return;
-    record(ball.index, ball.index, edge, diameter, tally, [&]<class Number>(double allowed) {
+    record_pair(job_, ball.index, ball.index, edge, diameter, tally, [&]<class Number>(double allowed) {
       return own_images_clear<Number>(ball.r, edge, allowed, gap_);
     });
-  }
-
-  /// Decides a near pair; `distance` and the sum of radii are in double.
-  template <class Predicate>
-  void record(std::uint64_t first, std::uint64_t second, double distance, double sum, Tally& tally,
-              const Predicate& clear) const {
-    const auto holds = [&](double allowed, Decisions& decisions) {
-      return decide(job_.options().arithmetic, decisions,
-                    [&]<class Number>() { return clear.template operator()<Number>(allowed); }) == Truth::yes;
-    };
-    const double allowed = job_.options().allowed_overlap;
-    const bool as_allowed = holds(allowed, tally.decisions);
-    Decisions only_for_the_sign;
-    const bool strictly = allowed == 0 ? as_allowed : holds(0, only_for_the_sign);
-    const double reach = sum + gap_;
-    tally.add_pair({{first, second}, 0.0 - with_sign((distance - reach) / reach, strictly)}, as_allowed);
-    if (gap_ > 0)
-      tally.least_distance = std::min(tally.least_distance, on_side_of(gap_, distance - sum, strictly));
   }
 
   double distance(const Ball<D>& a, const Ball<D>& b) const {

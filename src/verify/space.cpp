@@ -14,6 +14,7 @@ Vector<dynamic> periods_of(const Domain& domain) {
     periods[axis] = period;
   };
   if (const auto* box = std::get_if<bernal::Box>(&domain)) {
+    require(!box->is_tilted(), "a tilted box has no periods along its axes");
     require(box->corner.size() == dimension, "a box needs a corner and a size of one dimension");
     require(box->periodic.empty() || box->periodic.size() == static_cast<std::size_t>(dimension),
             "a box repeats itself or ends on each of its axes");

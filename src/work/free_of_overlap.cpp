@@ -47,16 +47,18 @@ void for_each_pair(const Spheres<D>& spheres, const Vector<D>& edges, Reach&& re
 constexpr std::size_t enough_for_threads = 50'000;
 
 /// The contact factor, above one that is known, where grids of few axes find who is near, in threads: each
-/// pair is met from its smaller sphere, and the largest of the ratios does not depend on the order.
+/// pair is met from its smaller sphere, and the largest of the ratios does not depend on the order. Also of
+/// tilted boxes, each image of a pair for itself.
 template <int D>
-double contact_factor_by_levels(const Spheres<D>& spheres, const Vector<D>& edges, double known) {
+double contact_factor_by_levels(const Spheres<D>& spheres, const TiltedBoundary<D>& boundary, double known) {
   constexpr std::size_t chunk = 4096;
   constexpr double rounding = 1 + 1e-9;
-  const Boundary<D> boundary{edges};
-  const auto ratio = [&](std::uint32_t i, const Vector<D>& from, std::uint32_t j, const Vector<D>& to) {
-    return (spheres.r[i] + spheres.r[j]) / boundary.minimum_image(from - to).norm();
+  const Boundary<D> upright{boundary.edges};
+  const bool is_tilted = boundary.is_tilted();
+  const auto ratio = [&](std::uint32_t i, std::uint32_t j, const Vector<D>& apart) {
+    return (spheres.r[i] + spheres.r[j]) / (is_tilted ? apart : upright.minimum_image(apart)).norm();
   };
-  const std::vector<SizeLevel<D>> levels = levels_of(spheres, boundary, 0);
+  const std::vector<SizeLevel<D>> levels = levels_of<D>(spheres, boundary, 0);
   double largest = known;
   for (std::size_t l = levels.size(); l-- > 0;) {
     const PointGrid<D>& grid = *levels[l].grid;
@@ -67,7 +69,7 @@ double contact_factor_by_levels(const Spheres<D>& spheres, const Vector<D>& edge
       double factor = largest;
       // Those that follow each other in the order of the cells are nearly as close as the closest.
       for (std::size_t k = first + 1; k < last; ++k)
-        factor = std::max(factor, ratio(grid.ids()[k - 1], grid.point(k - 1), grid.ids()[k], grid.point(k)));
+        factor = std::max(factor, ratio(grid.ids()[k - 1], grid.ids()[k], grid.point(k - 1) - grid.point(k)));
       for (std::size_t k = first; k < last; ++k) {
         const std::uint32_t i = grid.ids()[k];
         const Vector<D> c = grid.point(k);
@@ -75,7 +77,8 @@ double contact_factor_by_levels(const Spheres<D>& spheres, const Vector<D>& edge
           const double reach = (spheres.r[i] + levels[m].largest) / factor, far = reach * reach * rounding;
           levels[m].grid->for_each_near(c, reach, [&](std::uint32_t j, const Vector<D>& apart) {
             if (apart.squaredNorm() < far && j != i)
-              factor = std::max(factor, ratio(i, c, j, boundary.wrap(spheres.center(j))));
+              factor =
+                  std::max(factor, ratio(i, j, is_tilted ? apart : c - boundary.wrap(spheres.center(j))));
           });
         }
       }
@@ -89,10 +92,14 @@ double contact_factor_by_levels(const Spheres<D>& spheres, const Vector<D>& edge
 }  // namespace
 
 template <int D>
-double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges) {
+double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges, const Tilt& tilt) {
   double factor = 2 * std::ranges::max(spheres.r) / edges.minCoeff();
-  if constexpr (D == 2 || D == 3)
-    if (spheres.size() >= enough_for_threads) return contact_factor_by_levels<D>(spheres, edges, factor);
+  if constexpr (D == 2 || D == 3) {
+    const TiltedBoundary<D> boundary(edges, tilt);
+    if (boundary.is_tilted()) factor = 2 * std::ranges::max(spheres.r) / boundary.shortest_period();
+    if (spheres.size() >= enough_for_threads || boundary.is_tilted())
+      return contact_factor_by_levels<D>(spheres, boundary, factor);
+  }
   for_each_pair<D>(
       spheres, edges,
       [&](double r, double largest) {  // d < (r + rj) / factor, less rj, for the rj that makes it the most
@@ -143,23 +150,27 @@ bool is_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, const
 
 template <int D>
 Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed,
-                                const std::vector<bool>& walls) {
-  const double touching = contact_factor(spheres, edges_around_walls(edges, walls));
+                                const std::vector<bool>& walls, const Tilt& tilt) {
+  const double touching = contact_factor<D>(spheres, edges_around_walls(edges, walls), tilt);
   const double factor = std::max(std::clamp(1.0, touching * (1 - allowed), touching),
                                  wall_contact_factor(spheres, edges, walls));
   const double smallest = *std::ranges::min_element(spheres.r);
-  return edges * (factor * (1 + tolerance::growth(factor * edges.maxCoeff() / smallest)));
+  // Images are reached by sums of edges and tilts, each with a rounding of its own.
+  double longest = edges.maxCoeff();
+  for (const double length : tilt) longest += 2 * std::abs(length);
+  return edges * (factor * (1 + tolerance::growth(factor * longest / smallest)));
 }
 
 template <int D>
 void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, const Task& task, Reporter& report) {
-  Vector<D> free = edges_free_of_overlap<D>(spheres, edges, task.allowed_overlap, task.walls);
+  const Tilt tilt = task.tilt(edges);
+  Vector<D> free = edges_free_of_overlap<D>(spheres, edges, task.allowed_overlap, task.walls, tilt);
   while (!free.allFinite()) {  // cancelled while centres coincide
     Random random = report.random(Stream::relax);
-    displace_at_random<D>(spheres, edges, task.walls, 1e-3 * std::ranges::max(spheres.r), random);
-    free = edges_free_of_overlap<D>(spheres, edges, task.allowed_overlap, task.walls);
+    displace_at_random<D>(spheres, edges, task.walls, 1e-3 * std::ranges::max(spheres.r), random, tilt);
+    free = edges_free_of_overlap<D>(spheres, edges, task.allowed_overlap, task.walls, tilt);
   }
-  resize_box<D>(spheres, edges, free);
+  resize_box<D>(spheres, edges, free, is_tilted(task.domain));
 }
 
 #define BERNAL_INSTANTIATE(D)                                                                          \
@@ -167,9 +178,9 @@ void free_of_overlap(Spheres<D>& spheres, Vector<D>& edges, const Task& task, Re
                                                                             const Vector<D>&, double); \
   template bool is_free_of_overlap(const Spheres<D>&, const Vector<D>&, const std::vector<bool>&);     \
   template void free_of_overlap(Spheres<D>&, Vector<D>&, const Task&, Reporter&);                      \
-  template double contact_factor(const Spheres<D>&, const Vector<D>&);                                 \
+  template double contact_factor(const Spheres<D>&, const Vector<D>&, const Tilt&);                    \
   template Vector<D> edges_free_of_overlap(const Spheres<D>&, const Vector<D>&, double,                \
-                                           const std::vector<bool>&);
+                                           const std::vector<bool>&, const Tilt&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

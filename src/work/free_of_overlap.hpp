@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -16,12 +18,14 @@ inline double carried_along(double x, double factor, double edge) {
 }
 
 /// Gives a periodic box other edges, and every centre the same place relative to them, in [0, edge). Exact
-/// but for two roundings of each coordinate.
+/// but for two roundings of each coordinate. In a tilted box 0 is no image of the edge alone, so that what is
+/// rounded to it stays before it.
 template <int D>
-void resize_box(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& new_edges) {
+void resize_box(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& new_edges, bool is_tilted = false) {
   for (int k = 0; k < D; ++k) {
-    const double factor = new_edges[k] / edges[k];
-    for (double& x : spheres.x[k]) x = carried_along(x, factor, new_edges[k]);
+    const double factor = new_edges[k] / edges[k], last = std::nextafter(new_edges[k], 0.0);
+    for (double& x : spheres.x[k])
+      x = is_tilted ? std::min(x * factor, last) : carried_along(x, factor, new_edges[k]);
   }
   edges = new_edges;
 }
@@ -31,10 +35,10 @@ void resize_box(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& new_edge
 /// where there is room to shrink. Infinite where two centres coincide.
 ///
 /// Only pairs that could raise the factor found so far are looked at; spheres come in the order of falling
-/// radii, so that none has to look far for a larger one. Precondition: there are spheres.
-/// Cost: O(N) where the spheres are about in contact, O(N log N) where they are thinly spread.
+/// radii, so that none has to look far for a larger one. A `tilt` grows with the edges. Precondition: there
+/// are spheres. Cost: O(N) where the spheres are about in contact, O(N log N) where they are thinly spread.
 template <int D>
-double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges);
+double contact_factor(const Spheres<D>& spheres, const Vector<D>& edges, const Tilt& tilt = {});
 
 /// The edges of a periodic box around one that ends at walls along some axes, so large that no sphere between
 /// these meets an image of another, and is nearer to the walls than to images.
@@ -52,7 +56,7 @@ Vector<D> edges_around_walls(Vector<D> edges, const std::vector<bool>& walls) {
 /// empty: none. Cost: as `contact_factor`.
 template <int D>
 Vector<D> edges_free_of_overlap(const Spheres<D>& spheres, const Vector<D>& edges, double allowed = 0,
-                                const std::vector<bool>& walls = {});
+                                const std::vector<bool>& walls = {}, const Tilt& tilt = {});
 
 /// Grows or shrinks the box until nothing overlaps more than is allowed, or crosses its walls. Centres that
 /// coincide are parted.

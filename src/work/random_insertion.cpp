@@ -14,8 +14,8 @@ void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random& random
 
 template <int D>
 void displace_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
-                        double length, Random& random) {
-  Boundary<D> boundary{edges};
+                        double length, Random& random, const Tilt& tilt) {
+  TiltedBoundary<D> boundary(edges, tilt);
   for (std::size_t k = 0; k < walls.size(); ++k)
     if (walls[k]) boundary.edges[static_cast<int>(k)] = 0;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
@@ -26,9 +26,10 @@ void displace_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::
   }
 }
 
-#define BERNAL_INSTANTIATE(D)                                                         \
-  template void place_at_random(Spheres<D>&, const Vector<D>&, Random&, std::size_t); \
-  template void displace_at_random(Spheres<D>&, const Vector<D>&, const std::vector<bool>&, double, Random&);
+#define BERNAL_INSTANTIATE(D)                                                                                \
+  template void place_at_random(Spheres<D>&, const Vector<D>&, Random&, std::size_t);                        \
+  template void displace_at_random(Spheres<D>&, const Vector<D>&, const std::vector<bool>&, double, Random&, \
+                                   const Tilt&);
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
 

@@ -33,7 +33,7 @@ void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random& random
 /// Moves every sphere by `length` in a direction of its own; `walls` of the box stop its centre.
 template <int D>
 void displace_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
-                        double length, Random& random);
+                        double length, Random& random, const Tilt& tilt = {});
 
 /// Random sequential insertion of the spheres that are not `placed`, the largest first and all with the share
 /// `size` of their radii: each at the first of the places draw(r) that overlaps none before it and

@@ -20,6 +20,7 @@ struct FillTask {
   /// Mean radius by volume over the mean by number: 1 for equal spheres, exp(3.5 sigma²) for lognormal ones.
   double width_of_sizes = 1;
   bool has_walls = false;
+  bool is_tilted = false;    ///< the box is
   bool may_overlap = false;  ///< some overlap is allowed to stay
 };
 
@@ -54,6 +55,11 @@ struct Task {
   /// By the plan, for stages that choose their method.
   FillTask fill_task = {};
 
+  /// Of a periodic box with these edges; all 0 where it is upright.
+  Tilt tilt(const Vector<dynamic>& edges) const {
+    const auto* box = std::get_if<Box>(&domain);
+    return box ? tilt_in_proportion(*box, edges) : Tilt{};
+  }
   bool has_wall(int axis) const { return !walls.empty() && walls[static_cast<std::size_t>(axis)]; }
 };
 

@@ -60,7 +60,8 @@ TEST(StructureFactor, IsTheSumOverAllPairs) {
   const Vector<3> edges(2, 3, 1);
   Packing packing = periodic_packing<3>(ideal_gas<3>(37, 0.1, 0.2, edges, 9), edges);
   const StructureFactor found = factor_of(packing, {.bin = 0.02, .reach = 4});
-  const auto vectors = wave_vectors<3>(edges, found.bin_width, std::vector<std::size_t>(200, 400));
+  const auto vectors =
+      wave_vectors<3>(Boundary<3>{edges}, found.bin_width, std::vector<std::size_t>(200, 400));
   std::size_t b = 0;
   for (const auto& bin : vectors) {
     if (bin.empty()) continue;
@@ -89,7 +90,8 @@ TEST(StructureFactor, OfFccHasItsBraggPeaksAndNothingElse) {
   const StructureFactor found = factor_of(packing, {.bin = 0.05, .reach = 9});
   const Vector<3> edges = Vector<3>::Constant(cells * std::sqrt(2.0));
   std::size_t b = 0, peaks = 0;
-  for (const auto& bin : wave_vectors<3>(edges, found.bin_width, std::vector<std::size_t>(180, 400))) {
+  for (const auto& bin :
+       wave_vectors<3>(Boundary<3>{edges}, found.bin_width, std::vector<std::size_t>(180, 400))) {
     if (bin.empty()) continue;
     double bragg = 0;
     for (const auto& [n, length] : bin) {

@@ -26,10 +26,12 @@ struct Box {
   Coordinates corner = Vector<3>::Zero();
   Coordinates size = Vector<3>::Ones();
   std::vector<bool> periodic = {};  ///< whether each axis repeats itself; empty: none does
+  Tilt tilt = {};                   ///< of one without walls, of two or three dimensions; all 0: upright
 
   int dimension() const { return static_cast<int>(size.size()); }
   bool repeats(int axis) const { return !periodic.empty() && periodic[static_cast<std::size_t>(axis)]; }
   bool has_wall(int axis) const { return !repeats(axis); }
+  bool is_tilted() const { return tilt != Tilt{}; }
   bool repeats() const { return std::find(periodic.begin(), periodic.end(), true) != periodic.end(); }
   bool has_walls() const {
     return periodic.empty() || std::find(periodic.begin(), periodic.end(), false) != periodic.end();
@@ -37,7 +39,14 @@ struct Box {
 };
 
 /// The box [0, edges[k]) that repeats itself along every axis but those with `walls` (empty: none has).
-Box periodic_box(const Vector<dynamic>& edges, const std::vector<bool>& walls = {});
+Box periodic_box(const Vector<dynamic>& edges, const std::vector<bool>& walls = {}, const Tilt& tilt = {});
+
+/// The tilt of a box that has been scaled to other edges, in proportion to them; that of these very edges is
+/// as it stands.
+Tilt tilt_in_proportion(const Box& box, const Vector<dynamic>& edges);
+/// The least distance between a point and an image of it. Precondition: the box repeats itself along every
+/// axis.
+double shortest_period(const Box&);
 
 /// Points p with 0 <= (p - base)·a <= height for a = axis / |axis|, at most `radius` from the axis line.
 /// `axis` need not be of unit length. A periodic one has no lids: it is an endless column that repeats itself
@@ -102,8 +111,8 @@ using Domain = std::variant<Box, Cylinder, Sphere, Mesh, Polygon, Revolved>;
 /// "box", "cylinder", "sphere", "mesh", "polygon", "revolved"; "periodic" for a box that repeats itself along
 /// some axis.
 std::string_view kind_of(const Domain&);
-/// What to call it in a sentence: "cylinder", "periodic cylinder", "periodic box", "box periodic but along
-/// axis 2".
+/// What to call it in a sentence: "cylinder", "periodic cylinder", "periodic box", "tilted periodic box",
+/// "box periodic but along axis 2".
 std::string name_of(const Domain&);
 
 int dimension_of(const Domain&);
@@ -111,6 +120,12 @@ int dimension_of(const Domain&);
 bool has_walls(const Domain&);
 /// Whether it repeats itself along some axis.
 bool is_periodic(const Domain&);
+inline bool is_tilted(const Domain& domain) {
+  const auto* box = std::get_if<Box>(&domain);
+  return box && box->is_tilted();
+}
+/// Throws Error{bad_argument} for a tilted periodic box, of which `what` ("a mesh") is not known.
+void require_upright(const Domain&, std::string_view what);
 /// Whether its walls are many pieces, which may leave room anywhere: a mesh, a polygon or a solid of
 /// revolution.
 inline bool is_faceted(const Domain& domain) {
@@ -128,8 +143,9 @@ inline double margin_of(const Domain& domain) {
 /// sphere's centre. A mesh or a polygon has none.
 int symmetries_of(const Domain&);
 
-/// Smallest axis-aligned bounds, to rounding; along an axis that repeats itself, one period. Precondition: D
-/// is the dimension, or dynamic; or D is 3 and the domain one of the plane z = 0.
+/// Smallest axis-aligned bounds, to rounding; along an axis that repeats itself, one period, and of a tilted
+/// box the brick of a `TiltedBoundary`. Precondition: D is the dimension, or dynamic; or D is 3 and the
+/// domain one of the plane z = 0.
 template <int D = 3>
 Bounds<D> bounds_of(const Domain&);
 /// Enclosed volume, or that of one period, to rounding; an area in two dimensions, and so on. (For a mesh
@@ -137,9 +153,13 @@ Bounds<D> bounds_of(const Domain&);
 double volume_of(const Domain&);
 /// Area of the walls, in two dimensions their length; precondition: two or three dimensions.
 double area_of(const Domain&);
-/// The metric: the periods of the axes that have one. Precondition: D is the dimension.
+/// The metric: the periods of the axes that have one. Throws Error{bad_argument} for a tilted box, so that
+/// nothing that knows upright ones only takes it for one. Precondition: D is the dimension.
 template <int D>
 Boundary<D> boundary_of(const Domain&);
+/// The same for those who know tilted boxes.
+template <int D>
+TiltedBoundary<D> tilted_boundary_of(const Domain&);
 /// The metric in space of a domain of two or three dimensions: one in the plane z = 0 has no period along z.
 Boundary<3> boundary_in_space(const Domain&);
 

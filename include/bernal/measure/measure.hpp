@@ -59,6 +59,8 @@ struct Measurements {
   std::optional<StructureFactor> structure;
   std::optional<PoreSizes> pores;
   std::optional<SizeComparison> sizes;
+  /// What would be measured in an upright periodic box, and is not in a tilted one.
+  std::vector<std::string> left_out;
 };
 
 struct MeasureOptions {
