@@ -56,7 +56,17 @@ int count_frames(const Reading& reading) {
   return frames;
 }
 
-/// The three lines after "ITEM: BOX BOUNDS pp pp ff".
+/// From the bounds of the cell to the cell (LAMMPS's Howto_triclinic): what its tilts add to both ends.
+void take_tilt(const Tilt& tilt, FileBox& box) {
+  const auto [xy, xz, yz] = tilt;
+  box.tilt = tilt;
+  box.lower[0] -= std::min({0.0, xy, xz, xy + xz});
+  box.upper[0] -= std::max({0.0, xy, xz, xy + xz});
+  box.lower[1] -= std::min(0.0, yz);
+  box.upper[1] -= std::max(0.0, yz);
+}
+
+/// The three lines after "ITEM: BOX BOUNDS pp pp ff", or "… xy xz yz pp pp pp" with a tilt in each.
 FileBox read_bounds(const Reading& reading, ForeignLines& lines) {
   FileBox box = FileBox::of_three(AxisEnd::unsaid);
   const auto words = lines.words();
@@ -73,14 +83,16 @@ FileBox read_bounds(const Reading& reading, ForeignLines& lines) {
     box.ends[axis++] = is_period ? AxisEnd::period : words[k] == "ff" ? AxisEnd::wall : AxisEnd::wrapped;
   }
   if (axis != 0 && axis != 3) lines.fail("the ends of three axes are expected, such as pp pp ff");
+  Tilt tilt{};
   for (std::size_t k = 0; k < 3; ++k) {
     lines.require_next("the box");
     const auto bounds = lines.words();
     if (bounds.size() != 2 && bounds.size() != 3) lines.fail("two bounds of the box are expected");
     box.lower[k] = lines.number(bounds[0], "lower bound");
     box.upper[k] = lines.number(bounds[1], "upper bound");
-    if (bounds.size() == 3 && lines.number(bounds[2], "tilt") != 0) refuse_skewed(reading, lines.number());
+    if (bounds.size() == 3) tilt[k] = lines.number(bounds[2], "tilt");
   }
+  if (tilt != Tilt{}) take_tilt(tilt, box);
   return box;
 }
 
@@ -103,9 +115,15 @@ std::vector<std::string> with_plain_axes(std::vector<std::string> names, bool& i
 }
 
 void unscale(FileContents& contents) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double lower = contents.box->lower[k], edge = contents.box->upper[k] - lower;
-    for (double& x : contents.spheres.x[k]) x = lower + x * edge;
+  const FileBox& box = *contents.box;
+  auto& x = contents.spheres.x;
+  const auto [xy, xz, yz] = box.tilt;
+  for (std::size_t i = 0; i < x[0].size(); ++i) {
+    const double b = x[1][i], c = x[2][i];
+    for (std::size_t k = 0; k < 3; ++k) x[k][i] = box.lower[k] + x[k][i] * (box.upper[k] - box.lower[k]);
+    if (box.tilt == Tilt{}) continue;
+    x[0][i] += b * xy + c * xz;
+    x[1][i] += c * yz;
   }
 }
 

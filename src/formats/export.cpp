@@ -104,6 +104,7 @@ Domain without_walls(const Domain& domain) {
   const Bounds<dynamic> bounds = bounds_of<dynamic>(domain);
   Box box{bounds.lower, bounds.size(), std::vector<bool>(static_cast<std::size_t>(dimension_of(domain)))};
   const auto* given = std::get_if<Box>(&domain);
+  if (given) box.tilt = given->tilt;
   const auto* cylinder = std::get_if<Cylinder>(&domain);
   for (int k = 0; k < box.dimension(); ++k) {
     const bool repeats =

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/core/text.hpp"
 #include "bernal/scene/sphere_classes.hpp"
@@ -29,6 +30,7 @@ struct MappedDomain {
   Domain operator()(Box box) const {
     box.corner = point(box.corner);
     for (double& edge : box.size) edge = mapping.length(edge);
+    for (double& length : box.tilt) length = std::copysign(mapping.length(std::abs(length)), length);
     return box;
   }
   Domain operator()(Cylinder cylinder) const {
@@ -61,9 +63,27 @@ struct MappedDomain {
   }
 };
 
+/// Moves centres into the cell of a tilted box, where programs expect them: a result has them in the brick of
+/// its edges. Precondition: its origin is at zero.
+void wrap_into_cell(Exported& made) {
+  with_dimension(made.dimension(), std::integer_sequence<int, 2, 3>{}, [&](auto dimension) {
+    constexpr int D = dimension;
+    const TiltedBoundary<D> boundary = tilted_boundary_of<D>(made.domain);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      const Vector<D> c = made.spheres.center(i), shares = boundary.in_cell_vectors(c);
+      Vector<D> moved = c;
+      for (int k = 0; k < D; ++k)
+        if (const double turns = std::floor(shares[k]); turns != 0) moved -= turns * boundary.cell_vector(k);
+      made.wrapped |= moved != c;
+      made.spheres.set_center(i, moved);
+    }
+  });
+}
+
 /// Moves centres into the half-open period that programs expect: those that rounding put on its end, and
 /// those of other programs' files beyond it.
 void wrap_into_periods(Exported& made, bool centred) {
+  if (is_tilted(made.domain)) return wrap_into_cell(made);
   const auto* box = std::get_if<Box>(&made.domain);
   const auto periods = made.periods();
   const Bounds<dynamic> bounds = bounds_of<dynamic>(made.domain);
@@ -214,6 +234,11 @@ std::string Exported::periods_as(std::string_view yes, std::string_view no, std:
   const auto periodic = periods();
   const auto word = [&](std::size_t k) { return periodic[k] ? yes : no; };
   return fmt::format("{0}{3}{1}{3}{2}", word(0), word(1), word(2), between);
+}
+
+Tilt Exported::tilt() const {
+  const auto* box = std::get_if<Box>(&domain);
+  return box ? box->tilt : Tilt{};
 }
 
 Bounds<3> Exported::box() const {

@@ -16,9 +16,10 @@ namespace {
 void write_extxyz(const Exported& file, TextFile& out) {
   const Bounds<3> box = file.box();
   const Vector<3> size = box.size();
+  const auto [xy, xz, yz] = file.tilt();
   const bool typed = file.type_count > 1;
-  out.add(file.size(), "\nLattice=\"", size[0], " 0 0 0 ", size[1], " 0 0 0 ", size[2], "\" Origin=\"",
-          row_of(box.lower), "\" pbc=\"", file.periods_as("T", "F"),
+  out.add(file.size(), "\nLattice=\"", size[0], " 0 0 ", xy, ' ', size[1], " 0 ", xz, ' ', yz, ' ', size[2],
+          "\" Origin=\"", row_of(box.lower), "\" pbc=\"", file.periods_as("T", "F"),
           "\" Properties=id:I:1:species:S:1:pos:R:3:radius:R:1", typed ? ":class:I:1" : "",
           " unit=", name_of(file.unit()), " packing_fraction=", file.packing.packing_fraction(),
           " generator=\"bernal ", text_of(this_program()), "\"\n");
@@ -95,8 +96,9 @@ std::optional<FileBox> lattice_box(const Keys& keys, const Reading& reading, con
   for (std::size_t k = 0; k < 9; ++k) {
     if (k % 4 == 0) box.upper[k / 4] += lattice[k];
     const double edge = lattice[k / 3 * 4];
-    if (k % 4 != 0 && std::abs(lattice[k]) > rounding_of_edge * std::abs(edge))
-      refuse_skewed(reading, lines.number());
+    if (k % 4 == 0 || !(std::abs(lattice[k]) > rounding_of_edge * std::abs(edge))) continue;
+    if (k % 3 > k / 3) refuse_skewed(reading, lines.number());
+    box.tilt[k == 3 ? 0 : k == 6 ? 1 : 2] = lattice[k];
   }
   if (pbc != keys.end()) {
     std::vector<std::string_view> words;
@@ -220,6 +222,7 @@ Format extxyz_format() {
       .keys = {"unit", "types"},
       .file = "extxyz.xyz",
       .least_dimension = 2,
+      .tilted = true,
       .write_text = write_extxyz,
       .reads =
           "extended XYZ of OVITO and ASE: Lattice, pbc, Properties with radius or diameter; the last frame",

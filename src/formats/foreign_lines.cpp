@@ -237,7 +237,8 @@ void take_unit_of_remark(std::string_view remark, std::optional<Unit>& unit, con
 
 void refuse_skewed(const Reading& reading, int line) {
   reading.fail(
-      "the box is skewed (triclinic), and only upright ones are known; write the packing in an upright box",
+      "the box is triclinic with cell vectors other than (lx, 0, 0), (xy, ly, 0) and (xz, yz, lz); turn the "
+      "packing so that they are these",
       line);
 }
 

@@ -69,6 +69,8 @@ struct Exported {
   std::array<bool, 3> periods() const;
   /// "p p f": one letter an axis, for periodic and other axes.
   std::string periods_as(std::string_view yes, std::string_view no, std::string_view between = " ") const;
+  /// Of the periodic box; all 0 where it is upright.
+  Tilt tilt() const;
   /// A simulation box: the domain's bounds, wider by the largest radius at walls (and on both sides of a
   /// plane of discs), so that spheres that yield slightly stay inside.
   Bounds<3> box() const;
@@ -100,8 +102,9 @@ enum class Precision { as_double, as_float };
 enum class AxisEnd : std::uint8_t { period, wall, wrapped, unsaid };
 
 struct FileBox {
-  std::vector<double> lower, upper;
+  std::vector<double> lower, upper;  ///< of a tilted one its lowest corner, and that plus the edges
   std::vector<AxisEnd> ends;
+  Tilt tilt = {};
 
   static FileBox of_three(AxisEnd end) {
     return {std::vector<double>(3), std::vector<double>(3), std::vector<AxisEnd>(3, end)};
@@ -156,6 +159,7 @@ struct Format {
   std::optional<Unit> unit = {};
   std::string_view sizes = "radius";
   bool is_folder = false;
+  bool tilted = false;  ///< its files state tilted periodic boxes
   bool solids = false;  ///< whether it is given `Exported::solids`
   std::vector<schema::Choice> choices = {};
   std::function<void(const void*, const schema::Section&)> rule = {};
@@ -227,7 +231,8 @@ void take_unit(std::string_view word, std::string_view what, std::optional<Unit>
 /// Sets `unit` from a clause "lengths in mm" or "unit: mm", as in bernal's own files. Throws
 /// Error{bad_packing} for an unknown unit and if another one is set already.
 void take_unit_of_remark(std::string_view remark, std::optional<Unit>& unit, const Location& where);
-/// The error for a box that is not a cuboid.
+/// The error for a box whose cell vectors are not those of a tilted one, (lx, 0, 0), (xy, ly, 0) and
+/// (xz, yz, lz).
 [[noreturn]] void refuse_skewed(const Reading&, int line = 0);
 /// The requested frame, from 1. Throws Error{bad_argument} if there is no such frame.
 int frame_of(const Reading&, int frames);

@@ -78,7 +78,8 @@ OutputTable table_for(const Format& format) {
                    .most_dimensions = format.most_dimensions,
                    .unit = format.unit,
                    .sizes = format.sizes,
-                   .is_folder = format.is_folder};
+                   .is_folder = format.is_folder,
+                   .tilted = format.tilted};
   made.keys.choices.insert(made.keys.choices.end(), format.choices.begin(), format.choices.end());
   made.keys.rule = format.rule;
   return made;

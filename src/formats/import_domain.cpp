@@ -9,6 +9,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
+#include "scene/tilted_box.hpp"
 
 namespace bernal {
 namespace {
@@ -119,6 +120,18 @@ std::string edges_in_words(const std::vector<double>& edges, Unit unit) {
   return fmt::format("{:.10g} {}", fmt::join(edges, " x "), name_of(unit));
 }
 
+/// The last two tilts are of the third axis.
+void take_tilt(const FileBox& from, PeriodicBox& box) {
+  if (!box.walls.empty())
+    refuse_words(
+        "the box of the file is tilted, and only boxes that repeat themselves along every axis can be; "
+        "give ‹periodic›, or write the packing in an upright box");
+  if (box.dimension == 2 && (from.tilt[1] != 0 || from.tilt[2] != 0))
+    refuse_words("the box of the file is tilted out of its plane; leave ‹dimension› out");
+  box.tilt.assign(from.tilt.begin(), from.tilt.begin() + (box.dimension == 3 ? 3 : 1));
+  schema::tilt_rule(box, {"the box of the file", {}});
+}
+
 ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why) {
   ImportDomain made;
   made.scene.unit = unit;
@@ -142,12 +155,15 @@ ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why
   } else {
     made.scene.container =
         PeriodicBox{.dimension = static_cast<int>(dimension), .size = edges, .walls = walls};
+    if (box.tilt != Tilt{}) take_tilt(box, std::get<PeriodicBox>(made.scene.container));
     made.domain = packed_domain_of(made.scene);
     if (std::ranges::any_of(box.lower, [](double x) { return x != 0; }))
       // 0 - x avoids -0, which would be printed.
       for (const double x : box.lower) made.shift.push_back(0 - x);
   }
-  made.words = fmt::format("{}, {}, {}", name_of(made.domain), edges_in_words(edges, unit), why);
+  const std::string tilt =
+      is_tilted(made.domain) ? fmt::format(", tilt {:.10g}", fmt::join(box.tilt, ", ")) : std::string();
+  made.words = fmt::format("{}, {}{}, {}", name_of(made.domain), edges_in_words(edges, unit), tilt, why);
   return made;
 }
 

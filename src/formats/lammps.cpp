@@ -91,9 +91,10 @@ struct DataHead {
   bool has_atoms = false;
   FileBox box = FileBox::of_three(AxisEnd::unsaid);
   std::array<bool, 3> has_axis{};
+  bool has_tilt = false;
   std::vector<std::string> not_units = {};  ///< clauses of remarks that sound like units but are not
 
-  /// "10 atoms", "0 3 xlo xhi"; other lines are ignored.
+  /// "10 atoms", "0 3 xlo xhi", "0.5 0 0 xy xz yz"; other lines are ignored.
   void take(std::span<const std::string_view> words, const Reading& reading, const ForeignLines& lines) {
     if (words.size() == 2 && words[1] == "atoms") {
       const std::uint64_t said = lines.whole(words[0], "atoms");
@@ -116,9 +117,13 @@ struct DataHead {
     }
     const bool is_general = words.size() == 4 && words[3].ends_with("vec");
     if (is_general) refuse_skewed(reading, lines.number());
-    if (words.size() == 6 && words[3] == "xy")
-      for (const std::string_view tilt : words.first(3))
-        if (lines.number(tilt, "tilt") != 0) refuse_skewed(reading, lines.number());
+    if (words.size() == 6 && words[3] == "xy" && words[4] == "xz" && words[5] == "yz") {
+      Tilt tilt;
+      for (std::size_t k = 0; k < 3; ++k) tilt[k] = lines.number(words[k], words[3 + k]);
+      if (has_tilt && tilt != box.tilt) lines.fail("a line before this one says another tilt of the box");
+      box.tilt = tilt;
+      has_tilt = true;
+    }
   }
 };
 
@@ -294,6 +299,8 @@ void write_atoms(TextFile& out, const Exported& file, double unit_of_density, st
   out.add("\n", file.size(), " atoms\n", file.type_count, " atom types\n\n");
   constexpr std::string_view axes[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) out.add(box.lower[k], ' ', box.upper[k], ' ', axes[k], "lo ", axes[k], "hi\n");
+  if (const Tilt tilt = file.tilt(); tilt != Tilt{})
+    out.add(tilt[0], ' ', tilt[1], ' ', tilt[2], " xy xz yz\n");
   out.add("\n", heading, "\n\n");
   std::vector<std::string> densities;
   for (std::uint32_t type = 1; type <= file.type_count; ++type)
@@ -311,10 +318,11 @@ Format lammps_format() {
           .least_dimension = 2,
           .unit = Unit::m,
           .sizes = "diameter",
+          .tilted = true,
           .write_text = write_lammps,
           .reads =
               "LAMMPS and LIGGGHTS data files, atom_style sphere or granular, or another with ‹diameter›; an "
-              "upright box, periodic unless a remark says \"boundary p p f\"",
+              "upright or tilted box, periodic unless a remark says \"boundary p p f\"",
           .unit_from = "remarks \"units = si\", \"lengths in mm\", or ‹unit›",
           .recognises = counts_atoms,
           .read = read_lammps_data};

@@ -66,7 +66,7 @@ StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd en
   in_box.needed_volume = edges.prod();
   if (in_box.task.target_edges && lies_within<D>(spheres, edges, *in_box.task.target_edges)) {
     const double wider = in_box.task.target_edges->maxCoeff() / edges.maxCoeff() - 1;
-    resize_box<D>(spheres, edges, *in_box.task.target_edges);
+    resize_box<D>(spheres, edges, *in_box.task.target_edges, is_tilted(in_box.task.domain));
     if (wider > polish_to) end = end_in_larger_box(end, polish_to, report);
   }
   in_box.spheres = std::move(spheres);

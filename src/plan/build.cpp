@@ -140,15 +140,23 @@ void expect_in_container(Plan& plan) {
   choose_draw(plan, radii);
 }
 
+double rounded_share(double share) {
+  int exponent = 0;
+  const double mantissa = std::frexp(share, &exponent);
+  return std::ldexp(std::round(std::ldexp(mantissa, 44)), exponent - 44);
+}
+
 /// What a size means that only gives the proportions of a box: each edge over the longest, to 44 bits. So all
 /// sizes in proportion make the same plan, and the one that a run wrote down, rounded, makes that run again.
 Vector<dynamic> proportions_of(const Vector<dynamic>& edges) {
-  const auto rounded = [](double share) {
-    int exponent = 0;
-    const double mantissa = std::frexp(share, &exponent);
-    return std::ldexp(std::round(std::ldexp(mantissa, 44)), exponent - 44);
-  };
-  return (edges / edges.maxCoeff()).unaryExpr(rounded);
+  return (edges / edges.maxCoeff()).unaryExpr(&rounded_share);
+}
+
+/// The tilt over the longest edge, rounded in the same way.
+Tilt tilt_in_proportions(const Box& box) {
+  Tilt tilt = box.tilt;
+  for (double& length : tilt) length = rounded_share(length / box.size.maxCoeff());
+  return tilt;
 }
 
 /// That of so many spheres of these sizes as there are likely to be, with those of the start.
@@ -216,9 +224,13 @@ void expect_in_periodic_box(Plan& plan) {
     attainable = std::min(attainable, reached_by_last(scene));
   if (plan.box_follows) {
     plan.expected_count = static_cast<double>(*scene.target.count);
-    Vector<dynamic>& edges = std::get<Box>(plan.domain).size;
-    edges = proportions_of(edges);
-    edges *= std::pow(plan.expected_count * mean_volume / attainable / edges.prod(), 1.0 / dimension);
+    Box& box = std::get<Box>(plan.domain);
+    Box shape = box;
+    shape.size = proportions_of(box.size);
+    shape.tilt = tilt_in_proportions(box);
+    box.size = shape.size *
+               std::pow(plan.expected_count * mean_volume / attainable / shape.size.prod(), 1.0 / dimension);
+    box.tilt = tilt_in_proportion(shape, box.size);
   } else {
     plan.expected_count = attainable * volume_of(plan.domain) / mean_volume;
     if (scene.target.count) plan.expected_count = static_cast<double>(*scene.target.count);
@@ -300,6 +312,7 @@ FillTask fill_task_of(const Plan& plan) {
                 .width_of_sizes = plan.radii->moment(dimension + 1) /
                                   (plan.radii->moment(dimension) * plan.radii->moment(1)),
                 .has_walls = has_walls(plan.domain),
+                .is_tilted = is_tilted(plan.domain),
                 .may_overlap = plan.scene.overlap > 0};
   if (target.packing_fraction)
     task.packing_fraction = *target.packing_fraction;

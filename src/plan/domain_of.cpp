@@ -214,7 +214,9 @@ struct MakeDomain {
     if (!box.size.empty()) edges = Eigen::Map<const Eigen::VectorXd>(box.size.data(), box.dimension);
     std::vector<bool> walls(static_cast<std::size_t>(box.dimension), false);
     for (const int axis : box.walls) walls.at(static_cast<std::size_t>(axis)) = true;
-    return periodic_box(edges, walls);
+    Tilt tilt{};
+    std::ranges::copy(box.tilt, tilt.begin());
+    return periodic_box(edges, walls, tilt);
   }
 
  private:

@@ -39,7 +39,9 @@ constexpr int many_cells = 200'000;
 constexpr double hidden = 1e-9;
 
 struct LargestRadius {
-  double operator()(const Box& b) const { return 0.5 * b.size.minCoeff(); }
+  double operator()(const Box& b) const {
+    return 0.5 * (b.is_tilted() ? shortest_period(b) : b.size.minCoeff());
+  }
   double operator()(const Cylinder& c) const { return std::min(c.radius, 0.5 * c.height); }
   double operator()(const Sphere& s) const { return s.radius; }
   double operator()(const Mesh& m) const {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -40,6 +41,35 @@ std::string left_out_of(const Scene& there, const Scene& scene) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// Tilts of a box whose edges have become others.
+std::vector<double> carried_tilt(const PeriodicBox& box, const std::vector<double>& edges) {
+  std::vector<double> tilt = box.tilt;
+  const std::vector<double> before = edges_of(box);
+  for (std::size_t k = 0; k < tilt.size(); ++k) {
+    const std::size_t axis = k < 2 ? 0 : 1;
+    tilt[k] *= edges[axis] / before[axis];
+  }
+  return tilt;
+}
+
+/// That a packing has a tilt in the proportions of the container's.
+void require_tilt_of_start(const Scene& scene, const PeriodicBox& there, double in_our_unit) {
+  constexpr double rounding = 1e-9;
+  const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  const std::vector<double>& edges = scene.start.box;
+  if (!box || box->dimension != there.dimension || edges.empty()) return;
+  const std::vector<double> ours = edges_of(*box).empty() ? box->tilt : carried_tilt(*box, edges);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double stated = k < ours.size() ? ours[k] : 0;
+    const double of_start = k < there.tilt.size() ? in_our_unit * there.tilt[k] : 0;
+    if (!(std::abs(stated - of_start) <= rounding * std::ranges::max(edges)))
+      refuse(scene, "start",
+             fmt::format("the box of the start is tilted otherwise than the container: {:.10g}; give the "
+                         "container that \"tilt\"",
+                         fmt::join(there.tilt, ", ")));
+  }
+}
+
 /// Of a packing, in a folder or in none, its spheres are meant, and the box that they lie in. Returns what is
 /// left out.
 std::string look_into_packing(Scene& scene) {
@@ -48,8 +78,10 @@ std::string look_into_packing(Scene& scene) {
   if (!start.packing && !std::filesystem::is_directory(*start.file, unknown)) return {};
   const Scene there = start.packing ? start.packing->scene : scene_in(*start.file);
   const double in_our_unit = conversion_factor(there.unit, scene.unit);
-  if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty())
+  if (const auto* box = std::get_if<PeriodicBox>(&there.container); box && start.box.empty()) {
     for (const double edge : edges_of(*box)) start.box.push_back(in_our_unit * edge);
+    require_tilt_of_start(scene, *box, in_our_unit);
+  }
   if (!start.unit) start.unit = there.unit;
   if (!start.packing) *start.file = only_spheres_file_in(*start.file);
   return left_out_of(there, scene);
@@ -84,6 +116,7 @@ void complete_box(Scene& scene) {
            fmt::format("the box of the start has {} dimension{}, but the scene has {}", edges.size(),
                        edges.size() == 1 ? "" : "s", box->dimension));
   if (box->scalable) {
+    if (!box->tilt.empty()) box->tilt = carried_tilt(*box, edges);
     box->size = edges;
     box->edge.reset();
   } else if (table_of(scene.stages.front()).traits.stands_in_bed(scene) && edges != edges_of(*box)) {

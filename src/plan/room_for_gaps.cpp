@@ -145,8 +145,12 @@ Plan plan_with_room(const Plan& plan) {
 
 void take_expectations(Plan& plan, const Plan& with_room) {
   plan.box_follows = with_room.box_follows;
-  if (plan.box_follows)
-    std::get<Box>(plan.domain).size = box_as_roomy_as(plan.scene, std::get<Box>(with_room.domain).size);
+  if (plan.box_follows) {
+    Box& box = std::get<Box>(plan.domain);
+    const Box& other = std::get<Box>(with_room.domain);
+    box.size = box_as_roomy_as(plan.scene, other.size);
+    box.tilt = tilt_in_proportion(other, box.size);
+  }
   const double share = share_without_coats(plan, with_room);
   plan.attainable_packing_fraction = share * with_room.attainable_packing_fraction;
   plan.expected_packing_fraction = share * with_room.expected_packing_fraction;

@@ -85,6 +85,10 @@ void write_omissions(Page& page, const Report& report) {
   const Measurements& measured = report.measured;
   const int dimension = report.packing.spheres.dimension();
   if (report.packing.spheres.empty() || dimension < 2 || dimension > 3) return;
+  if (!measured.left_out.empty()) {
+    page.add("<p class=\"dim\">Not measured in a tilted box: {}.</p>\n", fmt::join(measured.left_out, ", "));
+    return;
+  }
   std::vector<std::string_view> left;
   if (!measured.local) left.push_back("local packing fractions");
   if (measured.local && !measured.local->ids.empty()) left.push_back("that of every single sphere");

@@ -255,7 +255,10 @@ Json::object_t::value_type domain_json(const Domain& domain) {
     std::vector<int> walls;
     for (int k = 0; k < box->dimension(); ++k)
       if (box->has_wall(k)) walls.push_back(k);
-    return {"box", {{"edges", box->size}, {"walls", walls}, {"volume", volume_of(domain)}}};
+    Json made = {{"edges", box->size}, {"walls", walls}, {"volume", volume_of(domain)}};
+    if (box->is_tilted())
+      made["tilt"] = std::vector(box->tilt.begin(), box->tilt.begin() + (box->dimension() == 3 ? 3 : 1));
+    return {"box", made};
   }
   Json container = {{"kind", kind_of(domain)}, {"volume", volume_of(domain)}, {"bounds", bounds_of(domain)}};
   if (is_periodic(domain)) container["periods"] = boundary_of<3>(domain).edges;
@@ -289,6 +292,7 @@ Json measured_figures(const Measurements& measured) {
                {"structure_factor", measured.structure},
                {"pores", measured.pores},
                {"sizes", figures_of(measured.sizes)}});
+  if (!measured.left_out.empty()) json["left_out"] = measured.left_out;
   return json;
 }
 
@@ -340,6 +344,7 @@ std::string measurements_as_json(const Packing& packing, const Measurements& mea
                                      {"s", factor->s},
                                      {"error", factor->error},
                                      {"vectors", factor->vectors}});
+  if (!measured.left_out.empty()) json["left_out"] = measured.left_out;
   json["pores"] = measured.pores;
   if (const auto& pores = measured.pores)
     json["pores"].update({{"bin_width", pores->bin_width},

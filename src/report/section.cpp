@@ -59,18 +59,32 @@ double where_it_is_cut(const Mesh& mesh, int axis) {
   return place;
 }
 
+/// So many periods along each axis; in a tilted box as nearly so as its layers allow.
+Vector<3> shift_of(const TiltedBoundary<3>& boundary, const Vector<3>& turns) {
+  Vector<3> shift = turns.cwiseProduct(boundary.edges);
+  if (!boundary.is_tilted()) return shift;
+  for (int k = 2; k > 0; --k)
+    for (int j = 0; j < k; ++j) shift[j] += turns[k] * boundary.along(k, j);
+  // Whole cell vectors of lower axes make up for what the higher ones have moved it.
+  const double rows = std::nearbyint((shift[1] - turns[1] * boundary.edges[1]) / boundary.edges[1]);
+  shift -= rows * boundary.cell_vector(1);
+  shift[0] -=
+      boundary.edges[0] * std::nearbyint((shift[0] - turns[0] * boundary.edges[0]) / boundary.edges[0]);
+  return shift;
+}
+
 /// Calls visit(shift) for the shifts by whole periods that can bring a sphere of this radius, with its centre
-/// in one period, into it.
+/// in one period, into it. The layers of a tilted box are shifted by up to half an edge against each other.
 template <class Visit>
-void for_each_shift(const Boundary<3>& boundary, double radius, Visit&& visit) {
+void for_each_shift(const TiltedBoundary<3>& boundary, double radius, Visit&& visit) {
   int most[3];
   for (int k = 0; k < 3; ++k)
-    most[k] =
-        boundary.repeats(k) ? static_cast<int>(std::min(50.0, std::ceil(radius / boundary.edges[k]))) : 0;
+    most[k] = boundary.repeats(k) ? static_cast<int>(std::min(50.0, std::ceil(radius / boundary.edges[k]))) +
+                                        (boundary.is_tilted() && k < 2 ? 1 : 0)
+                                  : 0;
   for (int x = -most[0]; x <= most[0]; ++x)
     for (int y = -most[1]; y <= most[1]; ++y)
-      for (int z = -most[2]; z <= most[2]; ++z)
-        visit(Vector<3>(Vector<3>(x, y, z).cwiseProduct(boundary.edges)));
+      for (int z = -most[2]; z <= most[2]; ++z) visit(shift_of(boundary, {1.0 * x, 1.0 * y, 1.0 * z}));
 }
 
 Bounds<2> bounds_of_loops(const std::vector<Loop>& loops) {
@@ -140,7 +154,7 @@ Section section_of(const Spheres<dynamic>& spheres, const Domain& domain, const 
   }
   section.area = std::abs(area);
 
-  const Boundary<3> boundary = boundary_of<3>(domain);
+  const TiltedBoundary<3> boundary = tilted_boundary_of<3>(domain);
   const Bounds<2> window = bounds_of_loops(section.outline);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double r = spheres.r[i];

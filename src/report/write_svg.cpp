@@ -175,7 +175,7 @@ void append_spheres(std::string& out, const Spheres<dynamic>& spheres, const Vie
 std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const Spheres<dynamic>& spheres) {
   if (!is_periodic(domain) || spheres.empty()) return mesh.vertices;
   const Vector<3> middle = bounds_of(domain).center();
-  const Boundary<3> boundary = boundary_of<3>(domain);
+  const TiltedBoundary<3> boundary = tilted_boundary_of<3>(domain);
   Vector<3> out = Vector<3>::Constant(std::ranges::max(spheres.r));
   for (int k = 0; k < 3; ++k)
     if (!boundary.repeats(k)) out[k] = 0;
@@ -248,10 +248,12 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::strin
   DiscPicture picture{{}, {{{0, 0}, {window[0], 0}, window, {0, window[1]}}}, {Vector<2>::Zero(), window}};
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const double r = spheres.r[i];
-    for (int image = 0; image < 9; ++image) {
-      const int column = image % 3 - 1, row = image / 3 - 1;
+    const int across = box.is_tilted() ? 5 : 3;  // rows of a tilted box are shifted against each other
+    for (int image = 0; image < 3 * across; ++image) {
+      const int column = image % across - across / 2, row = image / across - 1;
       if ((box.has_wall(0) && column != 0) || (box.has_wall(1) && row != 0)) continue;
-      const Vector<2> c(spheres.x[0][i] - box.corner[0] + column * box.size[0],
+      const Vector<2> c(spheres.x[0][i] - box.corner[0] + column * box.size[0] +
+                            row * std::remainder(box.tilt[0], box.size[0]),
                         spheres.x[1][i] - box.corner[1] + row * box.size[1]);
       if ((c.array() + r <= 0).any() || (c.array() - r >= window.array()).any()) continue;
       const bool sticks_out = (c.array() < r).any() || (c.array() + r > window.array()).any();

@@ -38,7 +38,6 @@
 #include "work/spheres_in_box.hpp"
 
 namespace bernal {
-
 namespace {
 
 /// How often a box of given size that is to be filled is tried with another number of spheres.
@@ -225,7 +224,7 @@ class Run {
   /// What stages are asked about a periodic box, as the plan has it, of these edges.
   void describe_box(Task& task, const Vector<dynamic>& edges) {
     const Box& box = std::get<Box>(plan_.domain);
-    task.domain = Box{box.corner / frame_.scale, edges, box.periodic};
+    task.domain = Box{box.corner / frame_.scale, edges, box.periodic, scaled(box.tilt, 1 / frame_.scale)};
     if (box.has_walls()) {
       task.walls = box.periodic;
       task.walls.flip();
@@ -298,7 +297,8 @@ class Run {
       Vector<dynamic> edges = in_box->edges * frame_.scale;
       if (with_room_)
         edges = as_stated ? Vector<dynamic>(std::get<Box>(stated_.domain).size) : edges_around(scene_, edges);
-      packing_.domain = periodic_box(edges, in_box->task.walls);
+      packing_.domain =
+          periodic_box(edges, in_box->task.walls, scaled(in_box->task.tilt(in_box->edges), frame_.scale));
       packing_.volume = volume_of(packing_.domain);
     }
     state_edges();
@@ -315,9 +315,10 @@ class Run {
   /// Of a periodic box, in the scene that the packing is of.
   void state_edges() {
     if (!scene_.is_periodic()) return;
-    const Coordinates& edges = std::get<Box>(packing_.domain).size;
+    const auto& [corner, edges, periodic, tilt] = std::get<Box>(packing_.domain);
     auto& stated = std::get<PeriodicBox>(packing_.scene.container);
     stated.size.assign(edges.begin(), edges.end());
+    std::ranges::copy_n(tilt.begin(), std::ssize(stated.tilt), stated.tilt.begin());
     stated.edge.reset();
   }
 

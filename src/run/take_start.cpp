@@ -80,18 +80,28 @@ void take_start_in_box(const Plan& plan, double scale, SpheresInBox& in_box) {
       in_box.spheres.x[static_cast<std::size_t>(k)][i] = x;
     }
   }
+  const bool tilted = is_tilted(task.domain);
+  if (tilted) {
+    const TiltedBoundary<D> cell(in_box.edges, task.tilt(in_box.edges));
+    for (std::size_t i = 0; i < n; ++i)
+      in_box.spheres.set_center(i, cell.wrap(Vector<D>(start.spheres.center(i) / scale)));
+  }
   in_box.begun = n;
   in_box.placed = n == in_box.spheres.size();
   if (task.target_edges && !plan.box_follows) {
     Spheres<D> moved = in_box.spheres.in<D>();
     Vector<D> edges = in_box.edges;
-    if (edges != *task.target_edges) resize_box<D>(moved, edges, *task.target_edges);
+    if (edges != *task.target_edges) resize_box<D>(moved, edges, *task.target_edges, tilted);
     in_box.spheres = std::move(moved);
     in_box.edges = edges;
   }
 
   const Stage& first = plan.scene.stages.front();
   const bool frees_overlap = table_of(first).traits.frees_box;
+  if (tilted) {  // where all stages free spheres of overlap
+    in_box.may_overlap = true;
+    return;
+  }
   Spheres<D> there = in_box.spheres.in<D>();
   there.resize(n);
   for (int k = 0; k < D; ++k)

@@ -16,6 +16,7 @@
 #include "scene/porosity.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
+#include "scene/tilted_box.hpp"
 #include "scene/toml_text.hpp"
 #include "scene/zones.hpp"
 
@@ -100,6 +101,7 @@ void take_default_stages(Scene& scene) {
 std::string_view name_of_domain(const Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   if (!box) return scene.dimension() == 2 ? "container of two dimensions" : "container with walls";
+  if (schema::is_tilted(scene)) return "tilted periodic box";
   return box->walls.empty() ? "periodic box" : "periodic box that ends at walls along some axes";
 }
 
@@ -266,6 +268,13 @@ void complete_output(Output& output, const Scene& scene) {
         fmt::format("the format \"{}\" cannot hold a packing of {} dimension{}; \"{}\" can", table.name(),
                     dimension, dimension == 1 ? "" : "s", fmt::join(others, "\", \"")));
   }
+  if (schema::is_tilted(scene) && !table.tilted) {
+    std::vector<std::string_view> others;
+    for (const OutputTable* other : output_tables())
+      if (other->tilted) others.push_back(other->name());
+    section.fail("format", fmt::format("the format \"{}\" holds no tilted periodic box; \"{}\" can",
+                                       table.name(), fmt::join(others, "\", \"")));
+  }
   const bool shrinks = output.contact == ContactTreatment::none || output.contact == ContactTreatment::gap ||
                        output.contact == ContactTreatment::shrink;
   if (!table.has_bridges() && !shrinks) {
@@ -307,7 +316,7 @@ bool StageTraits::stands_in_bed(const Scene& scene) const {
 bool StageTraits::works_in(const Scene& scene) const {
   if (stands_in_bed(scene)) return in_bed && (in_plane || scene.dimension() == 3);
   const auto& box = std::get<PeriodicBox>(scene.container);
-  return in_box && (box_between_walls || box.walls.empty());
+  return in_box && (box_between_walls || box.walls.empty()) && (in_tilted_box || !schema::is_tilted(scene));
 }
 
 /// Of an obstacle, or of a container what it has in common with these.
@@ -359,6 +368,7 @@ void complete(Scene& scene) {
   complete_stages(scene);
   complete_zones(scene);
   check_insides(scene);
+  schema::require_tilt_known(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});

@@ -2,6 +2,7 @@
 
 #include "scene/scale_entry.hpp"
 #include "scene/spheres_rules.hpp"
+#include "scene/tilted_box.hpp"
 #include "scene/toml_text.hpp"
 
 #include <algorithm>
@@ -53,6 +54,7 @@ void periodic_rule(const PeriodicBox& box, const Section& section) {
                                        box.dimension, box.size.size()));
   if (!box.walls.empty() && std::ranges::max(box.walls) >= box.dimension)
     section.refuse("walls", fmt::format("must name axes, each once, from 0 to {}", box.dimension - 1));
+  tilt_rule(box, section);
 }
 
 /// Where nothing says how large the box is, the packing does.
@@ -244,6 +246,9 @@ const std::vector<Entry>& container_entries() {
            .keys = {integer(&PeriodicBox::dimension, "dimension", "of space", {1, max_dimension}),
                     required(key(Type::lengths, &PeriodicBox::size, "size", "its edges")),
                     required(length(&PeriodicBox::edge, "edge", "all its edges")),
+                    key(Type::coordinates, &PeriodicBox::tilt, "tilt",
+                        "xy, xz and yz of its cell vectors (lx, 0, 0), (xy, ly, 0) and (xz, yz, lz); in two "
+                        "dimensions xy"),
                     key(Type::axes, &PeriodicBox::walls, "walls",
                         "axes, counted from 0, along which the box does not repeat itself but ends at walls, "
                         "with whole spheres between them"),

@@ -31,8 +31,9 @@ constexpr float least_distance = 1e-3f;
 
 }  // namespace
 
-template <int D>
-NeighborRelaxation<D>::NeighborRelaxation(const Spheres<D>& spheres, const Vector<D>& edges)
+template <int D, bool tilted>
+NeighborRelaxation<D, tilted>::NeighborRelaxation(const Spheres<D>& spheres, const Vector<D>& edges,
+                                                  const Tilt& tilt)
     : count_(spheres.size()),
       edges_(edges),
       thickest_skin_(2 * relative_skin[D - 1] * std::accumulate(spheres.r.begin(), spheres.r.end(), 0.0) /
@@ -43,9 +44,11 @@ NeighborRelaxation<D>::NeighborRelaxation(const Spheres<D>& spheres, const Vecto
       ids_(spheres.size()),
       squeeze_(spheres.size(), 0.0f),
       force_(spheres.size(), 0.0f) {
+  if constexpr (tilted) cell_ = {edges, tilt};
   for (std::size_t i = 0; i < count_; ++i) {
-    for (int k = 0; k < D; ++k)
-      places_[i].x[k] = to_fixed(spheres.x[static_cast<std::size_t>(k)][i], edges[k]);
+    Vector<D> c = spheres.center(i);
+    if constexpr (tilted) c = cell_.boundary(edges).in_cell_vectors(c).cwiseProduct(edges);
+    for (int k = 0; k < D; ++k) places_[i].x[k] = to_fixed(c[k], edges[k]);
     radii_[i] = static_cast<float>(spheres.r[i]);
     largest_radius_ = std::max(largest_radius_, radii_[i]);
     ids_[i] = static_cast<Id>(i);
@@ -53,23 +56,24 @@ NeighborRelaxation<D>::NeighborRelaxation(const Spheres<D>& spheres, const Vecto
   set_scale();
 }
 
-template <int D>
-void NeighborRelaxation<D>::set_scale() {
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::set_scale() {
   for (int k = 0; k < D; ++k) {
     scale_[k] = static_cast<float>(edges_[k] * 0x1p-32);
     inverse_scale_[k] = static_cast<float>(0x1p32 / edges_[k]);
   }
 }
 
-template <int D>
-void NeighborRelaxation<D>::grow(double factor) {
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::grow(double factor) {
   edges_ *= factor;
+  if constexpr (tilted) cell_.grow(factor);
   set_scale();
   if (factor < 1) stale_ = true;
 }
 
-template <int D>
-void NeighborRelaxation<D>::keep_between_walls(const std::vector<bool>& walls, double share) {
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::keep_between_walls(const std::vector<bool>& walls, double share) {
   walled_.clear();
   wall_share_ = share;
   for (int k = 0; k < D && !walls.empty(); ++k)
@@ -79,8 +83,8 @@ void NeighborRelaxation<D>::keep_between_walls(const std::vector<bool>& walls, d
 }
 
 /// Coordinates have steps of 2^-32, radii are rounded to single precision: twice that error is added.
-template <int D>
-void NeighborRelaxation<D>::stop_at_walls(Id i) {
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::stop_at_walls(Id i) {
   constexpr double rounding = 1 + 0x1p-23;
   for (const int k : walled_) {
     const double low = std::min(rounding * wall_share_ * radii_[i] / edges_[k], 0.5);
@@ -90,8 +94,8 @@ void NeighborRelaxation<D>::stop_at_walls(Id i) {
 }
 
 /// A step that would end beyond a wall ends at this wall; it does not wrap round to the other one.
-template <int D>
-void NeighborRelaxation<D>::move_between_walls(Id i, const Ints& step) {
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::move_between_walls(Id i, const Ints& step) {
   const Place before = places_[i];
   places_[i].x += __builtin_bit_cast(Whole, step);
   for (const int k : walled_) {
@@ -101,15 +105,31 @@ void NeighborRelaxation<D>::move_between_walls(Id i, const Ints& step) {
   stop_at_walls(i);
 }
 
-template <int D>
-inline typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::away(const Place& from,
-                                                                          const Place& to) const {
-  return __builtin_convertvector(__builtin_bit_cast(Ints, Whole(to.x - from.x)), Floats) * scale_;
+template <int D, bool tilted>
+inline typename NeighborRelaxation<D, tilted>::Floats NeighborRelaxation<D, tilted>::away(
+    const Place& from, const Place& to) const {
+  const Floats way = __builtin_convertvector(__builtin_bit_cast(Ints, Whole(to.x - from.x)), Floats) * scale_;
+  if constexpr (tilted)
+    return cell_.way(way);
+  else
+    return way;
+}
+
+/// Whether an image of sphere j is nearer to sphere i.
+template <int D, bool tilted>
+bool NeighborRelaxation<D, tilted>::any_image_within(Id i, Id j, double limit) const {
+  const Floats nearest = away(places_[j], places_[i]);
+  Vector<D> displacement;
+  for (int k = 0; k < D; ++k) displacement[k] = nearest[k];
+  bool any = false;
+  cell_.boundary(edges_).for_each_image(displacement, limit,
+                                        [&](const Vector<D>& image) { any = any || image.norm() < limit; });
+  return any;
 }
 
 /// The squared distances from four spheres.
-template <int D>
-inline __m128 NeighborRelaxation<D>::squares_of(const Place& from, Id a, Id b, Id c, Id d) const {
+template <int D, bool tilted>
+inline __m128 NeighborRelaxation<D, tilted>::squares_of(const Place& from, Id a, Id b, Id c, Id d) const {
   const auto square = [&](Id k) {
     const Floats way = away(places_[k], from);
     return to_four(Floats(way * way));
@@ -117,10 +137,10 @@ inline __m128 NeighborRelaxation<D>::squares_of(const Place& from, Id a, Id b, I
   return sums(square(a), square(b), square(c), square(d));
 }
 
-template <int D>
-double NeighborRelaxation<D>::sweep_and_measure(float omega) {
+template <int D, bool tilted>
+double NeighborRelaxation<D, tilted>::sweep_and_measure(float omega) {
   keep_lists_valid();
-  const bool in_images = edges_.minCoeff() < narrow * largest_radius_;
+  const bool in_images = tilted ? is_narrow_ : edges_.minCoeff() < narrow * largest_radius_;
   float largest = 0;
   for (Id i = 0; i < count_; ++i) {
     const Id* end = find_overlapping(i);
@@ -130,7 +150,9 @@ double NeighborRelaxation<D>::sweep_and_measure(float omega) {
     squeeze_[i] = push.squeeze;
     force_[i] = radii_[i] * push.depth;
     largest = std::max(largest, push.largest);
-    const Floats step = push.sum * std::min(omega / push.contacts, 1.0f) * inverse_scale_;
+    Floats way = push.sum * std::min(omega / push.contacts, 1.0f);
+    if constexpr (tilted) way = cell_.along(way);
+    const Floats step = way * inverse_scale_;
     const Floats limit = Floats{} + longest_move;
     const Floats capped = step < limit ? (step > -limit ? step : -limit) : limit;
     if (walled_.empty())
@@ -143,11 +165,17 @@ double NeighborRelaxation<D>::sweep_and_measure(float omega) {
 }
 
 /// The spheres of its list whose nearest image overlaps it.
-template <int D>
-const typename NeighborRelaxation<D>::Id* NeighborRelaxation<D>::find_overlapping(Id i) {
+template <int D, bool tilted>
+const typename NeighborRelaxation<D, tilted>::Id* NeighborRelaxation<D, tilted>::find_overlapping(Id i) {
   const Place me = places_[i];
   const __m128 r = _mm_set1_ps(radii_[i]);
   Id* end = hits_.data();
+  if constexpr (tilted)
+    if (is_narrow_) {  // whatever may overlap in some image
+      for (std::size_t n = list_[i]; n < list_[i + 1]; ++n)
+        if (neighbors_[n] != count_) *end++ = neighbors_[n];
+      return end;
+    }
   for (std::size_t n = list_[i]; n < list_[i + 1]; n += block) {
     const Id* j = &neighbors_[n];
     const __m128 squared = squares_of(me, j[0], j[1], j[2], j[3]);
@@ -162,8 +190,9 @@ const typename NeighborRelaxation<D>::Id* NeighborRelaxation<D>::find_overlappin
 }
 
 /// What sphere j does to sphere i across this way, which leads from j to i.
-template <int D>
-inline void NeighborRelaxation<D>::add_to(Push& push, Id i, Id j, const Floats& way, float distance) const {
+template <int D, bool tilted>
+inline void NeighborRelaxation<D, tilted>::add_to(Push& push, Id i, Id j, const Floats& way,
+                                                  float distance) const {
   const float reach = radii_[i] + radii_[j], weight = 2 * radii_[j] / reach;
   const float ratio = 1 - distance / reach;
   push.squeeze += ratio * ratio;
@@ -176,8 +205,9 @@ inline void NeighborRelaxation<D>::add_to(Push& push, Id i, Id j, const Floats& 
   push.depth += weight * ratio * reach;
 }
 
-template <int D>
-typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_nearest(Id i, const Id* end) const {
+template <int D, bool tilted>
+typename NeighborRelaxation<D, tilted>::Push NeighborRelaxation<D, tilted>::push_from_nearest(
+    Id i, const Id* end) const {
   Push push;
   for (const Id* j = hits_.data(); j < end; ++j) {
     const Floats d = away(places_[*j], places_[i]);
@@ -187,9 +217,15 @@ typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_nearest(Id
   return push;
 }
 
-template <int D>
-typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_images(Id i, const Id* end) const {
-  const Boundary<D> boundary{edges_};
+template <int D, bool tilted>
+typename NeighborRelaxation<D, tilted>::Push NeighborRelaxation<D, tilted>::push_from_images(
+    Id i, const Id* end) const {
+  const auto boundary = [&] {
+    if constexpr (tilted)
+      return cell_.boundary(edges_);
+    else
+      return Boundary<D>{edges_};
+  }();
   Push push;
   push.contacts =
       std::numeric_limits<float>::min();  // in case the nearest image is a contact to rounding only
@@ -210,8 +246,9 @@ typename NeighborRelaxation<D>::Push NeighborRelaxation<D>::push_from_images(Id 
 }
 
 /// The direction away from a sphere with the same centre; another one for each pair.
-template <int D>
-typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::any_direction(Id i, Id j) const {
+template <int D, bool tilted>
+typename NeighborRelaxation<D, tilted>::Floats NeighborRelaxation<D, tilted>::any_direction(Id i,
+                                                                                            Id j) const {
   const Id a = std::min(ids_[i], ids_[j]), b = std::max(ids_[i], ids_[j]);
   Vector<D> v;
   std::uint32_t state = a * 2654435761u ^ (b + 1) * 2246822519u;
@@ -225,8 +262,8 @@ typename NeighborRelaxation<D>::Floats NeighborRelaxation<D>::any_direction(Id i
   return direction;
 }
 
-template <int D>
-bool NeighborRelaxation<D>::moved_too_far() const {
+template <int D, bool tilted>
+bool NeighborRelaxation<D, tilted>::moved_too_far() const {
   const double way = std::max(0.0, 0.5 * wear_ * skin_ - grown_);
   const auto limit = static_cast<float>(way * way);
   __m128 largest = _mm_setzero_ps();
@@ -240,8 +277,8 @@ bool NeighborRelaxation<D>::moved_too_far() const {
   return std::max({largest[0], largest[1], largest[2], largest[3]}) > limit;
 }
 
-template <int D>
-void NeighborRelaxation<D>::keep_lists_valid() {
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::keep_lists_valid() {
   if (!stale_ && !moved_too_far()) return;
   if (lists_built_.calls > 0 &&
       !stale_) {  // where lists last long, shorter ones that do not last so long cost less
@@ -256,9 +293,11 @@ void NeighborRelaxation<D>::keep_lists_valid() {
   age_ = 0;
 }
 
-template <int D>
-void NeighborRelaxation<D>::sort_into_cells(double reach) {
-  const std::vector<Id> to = grid_.sort(edges_, reach, places_, count_);
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::sort_into_cells(double reach) {
+  Vector<D> widths = edges_;
+  if constexpr (tilted) widths = cell_.widths(edges_);
+  const std::vector<Id> to = grid_.sort(widths, reach, places_, count_);
   const std::vector<Place> places = places_;
   const std::vector<float> radii = radii_;
   const std::vector<Id> ids = ids_;
@@ -269,9 +308,11 @@ void NeighborRelaxation<D>::sort_into_cells(double reach) {
   }
 }
 
-template <int D>
-void NeighborRelaxation<D>::build_lists() {
-  sort_into_cells(2.0 * largest_radius_ + skin_);
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::build_lists() {
+  const double farthest = 2.0 * largest_radius_ + skin_;
+  if constexpr (tilted) is_narrow_ = cell_.widths(edges_).minCoeff() < 2.001 * farthest;
+  sort_into_cells(farthest);
   list_.resize(count_ + 1);
   std::vector<typename FixedPointGrid<D>::Row> rows;
   std::size_t used = 0, longest = 0;
@@ -286,6 +327,12 @@ void NeighborRelaxation<D>::build_lists() {
     const Place me = places_[i];
     const __m128 blown_up = _mm_set1_ps(radii_[i] + static_cast<float>(skin_));
     for (const auto& row : rows) {
+      if (tilted && is_narrow_) {
+        for (Id j = row.first; j < row.last; ++j)
+          if (j != i && any_image_within(i, j, static_cast<double>(radii_[i]) + radii_[j] + skin_))
+            *end++ = j;
+        continue;
+      }
       for (Id j = row.first; j < row.last; j += block) {
         const __m128 squared = squares_of(me, j, j + 1, j + 2, j + 3);
         const __m128 reach = _mm_add_ps(blown_up, _mm_loadu_ps(&radii_[j]));
@@ -306,15 +353,15 @@ void NeighborRelaxation<D>::build_lists() {
   hits_.resize(longest + 2 * block);
 }
 
-template <int D>
-std::vector<float> NeighborRelaxation<D>::by_id(const std::vector<float>& in_order) const {
+template <int D, bool tilted>
+std::vector<float> NeighborRelaxation<D, tilted>::by_id(const std::vector<float>& in_order) const {
   std::vector<float> of_sphere(count_);
   for (std::size_t i = 0; i < count_; ++i) of_sphere[ids_[i]] = in_order[i];
   return of_sphere;
 }
 
-template <int D>
-void NeighborRelaxation<D>::exchange(const std::vector<Id>& to) {
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::exchange(const std::vector<Id>& to) {
   const std::vector<float> radii = by_id(radii_);
   float most = 0;
   for (Id i = 0; i < count_; ++i) {
@@ -326,9 +373,18 @@ void NeighborRelaxation<D>::exchange(const std::vector<Id>& to) {
   grown_ += most;
 }
 
-template <int D>
-void NeighborRelaxation<D>::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
+template <int D, bool tilted>
+void NeighborRelaxation<D, tilted>::write_to(Spheres<D>& spheres, Vector<D>& edges) const {
   edges = edges_;
+  if constexpr (tilted) {
+    const TiltedBoundary<D> least = cell_.boundary(edges_), given = cell_.given(edges_);
+    for (std::size_t i = 0; i < count_; ++i) {
+      Vector<D> c = Vector<D>::Zero();
+      for (int k = 0; k < D; ++k) c += places_[i].x[k] * 0x1p-32 * least.cell_vector(k);
+      spheres.set_center(ids_[i], given.wrap(c));
+    }
+    return;
+  }
   for (std::size_t i = 0; i < count_; ++i)
     for (int k = 0; k < D; ++k)
       spheres.x[static_cast<std::size_t>(k)][ids_[i]] = places_[i].x[k] * (edges_[k] * 0x1p-32);
@@ -337,5 +393,7 @@ void NeighborRelaxation<D>::write_to(Spheres<D>& spheres, Vector<D>& edges) cons
 #define BERNAL_INSTANTIATE(D) template class NeighborRelaxation<D>;
 BERNAL_IN_EVERY_DIMENSION(BERNAL_INSTANTIATE)
 #undef BERNAL_INSTANTIATE
+template class NeighborRelaxation<2, true>;
+template class NeighborRelaxation<3, true>;
 
 }  // namespace bernal

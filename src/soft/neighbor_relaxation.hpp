@@ -2,10 +2,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "bernal/core/boundary.hpp"
 #include "bernal/core/spheres.hpp"
 #include "core/archive.hpp"
 #include "core/made.hpp"
 #include "soft/fixed_point_grid.hpp"
+#include "soft/least_tilted_cell.hpp"
 #include "work/effect_log.hpp"
 
 namespace bernal {
@@ -18,11 +20,16 @@ namespace bernal {
 /// coordinate is a whole number of edge / 2^32, so that differences wrap round to the nearest image. In a box
 /// less than two diameters across two spheres may overlap in several images; all of them push, as in
 /// `SoftKernels`.
-template <int D>
+///
+/// In a tilted box of two or three dimensions a coordinate counts along a vector of its `LeastTiltedCell`.
+/// What wraps round along these is the nearest image as long as it is nearer than half of every width of the
+/// cell.
+template <int D, bool tilted = false>
 class NeighborRelaxation {
  public:
-  /// Centres in [0, edge). Precondition: every edge is at least the largest diameter.
-  NeighborRelaxation(const Spheres<D>& spheres, const Vector<D>& edges);
+  /// Centres in [0, edge). Precondition: every edge, and the shortest period, is at least the largest
+  /// diameter.
+  NeighborRelaxation(const Spheres<D>& spheres, const Vector<D>& edges, const Tilt& tilt = {});
 
   /// Along axes with walls, centres keep `share` times their radius away from 0 and from the edge, or stay in
   /// the middle if there is no room for that. So no sphere reaches an image of another across a wall.
@@ -56,6 +63,7 @@ class NeighborRelaxation {
   void archive(Archive& a) {
     a(edges_, scale_, inverse_scale_, walled_, wall_share_, skin_, places_, radii_, ids_, squeeze_, force_,
       neighbors_, list_, built_at_, hits_, stale_, wear_, age_, grown_, lists_built_);
+    if constexpr (tilted) a(cell_, is_narrow_);
   }
 
  private:
@@ -71,6 +79,7 @@ class NeighborRelaxation {
     float contacts = 0, squeeze = 0, largest = 0, depth = 0;
   };
 
+  bool any_image_within(Id i, Id j, double limit) const;
   const Id* find_overlapping(Id i);
   Push push_from_nearest(Id i, const Id* end) const;
   Push push_from_images(Id i, const Id* end) const;
@@ -92,6 +101,9 @@ class NeighborRelaxation {
   Vector<D> edges_;
   Floats scale_{}, inverse_scale_{};  // of a unit of the coordinates
   float largest_radius_ = 0;
+  LeastTiltedCell<D> cell_;  // of a tilted box
+  bool is_narrow_ =
+      false;  // whether lists have spheres whose nearest image along the cell vectors is not near
   std::vector<int> walled_;  // axes
   double wall_share_ = 1;
   double thickest_skin_, skin_;  // spheres are neighbours if the gap between them is less

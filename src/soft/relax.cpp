@@ -57,8 +57,10 @@ template <int D>
 bool is_done(const Spheres<D>& spheres, const Vector<D>& edges, const SpheresInBox& in_box,
              const Relax& options) {
   const std::optional<Vector<dynamic>>& target = in_box.task.target_edges;
-  return begins_as_it_is(in_box, options) && target && in_box.edges == *target &&
-         is_free_of_overlap<D>(spheres, edges, in_box.task.walls);
+  if (!begins_as_it_is(in_box, options) || !target || in_box.edges != *target) return false;
+  if (const Tilt tilt = in_box.task.tilt(in_box.edges); tilt != Tilt{})
+    return edges_free_of_overlap<D>(spheres, edges, 0, {}, tilt)[0] <= edges[0];
+  return is_free_of_overlap<D>(spheres, edges, in_box.task.walls);
 }
 
 /// Whether sizes are wide and spheres are to be as dense as they can.
@@ -86,7 +88,14 @@ Vector<dynamic> edges_to_start_from(const SpheresInBox& in_box, const Relax& opt
     const double asked = in_box.task.target_edges->prod();
     if (is_loose(in_box) || edges.prod() > asked) edges = with_volume((1 - room_to_grow) * asked);
   }
-  const double needed = 2 * std::ranges::max(in_box.spheres.r) / edges.minCoeff();
+  double shortest = edges.minCoeff();
+  if (const auto* box = std::get_if<Box>(&in_box.task.domain); box && box->is_tilted()) {
+    Box there = *box;
+    there.size = edges;
+    there.tilt = in_box.task.tilt(edges);
+    shortest = shortest_period(there);
+  }
+  const double needed = 2 * std::ranges::max(in_box.spheres.r) / shortest;
   return needed > 1 ? Vector<dynamic>(edges * (needed * (1 + 4 * tolerance::roundoff))) : edges;
 }
 
@@ -105,9 +114,9 @@ StageEnd place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Sp
   if (there == 0) {
     edges = start;
   } else {
-    resize_box<D>(spheres, edges, start);
+    resize_box<D>(spheres, edges, start, is_tilted(in_box.task.domain));
     displace_at_random<D>(spheres, edges, in_box.task.walls, first_jitter * std::ranges::max(spheres.r),
-                          random);
+                          random, in_box.task.tilt(edges));
   }
   place_at_random<D>(spheres, edges, random, there);
   return StageEnd::converged;
@@ -117,7 +126,8 @@ StageEnd place(Spheres<D>& spheres, Vector<D>& edges, const Vector<D>& start, Sp
 template <int D>
 bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const SpheresInBox& in_box,
                      const Relax& options) {
-  const Vector<D> free = edges_free_of_overlap<D>(spheres, edges, 0, in_box.task.walls);
+  const Vector<D> free =
+      edges_free_of_overlap<D>(spheres, edges, 0, in_box.task.walls, in_box.task.tilt(edges));
   return free[0] <= edges[0] / (1 - options.stop);
 }
 
@@ -157,7 +167,7 @@ StageEnd relax_fast(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box,
       report.account = "on " + packing.device_name();
       return end;
     }
-  SoftEngine<D> packing(spheres, edges, in_box.task.walls);
+  SoftEngine<D> packing(spheres, edges, in_box.task.walls, 1, false, in_box.task.tilt(edges));
   return grow(packing);
 }
 
@@ -255,7 +265,7 @@ StageEnd relax_in(SpheresInBox& in_box, Reporter& report, const Relax& options) 
         lies_within<D>(spheres, edges, *in_box.task.target_edges))
       step = Step::exchange;
     else
-      resize_box<D>(spheres, edges, start);
+      resize_box<D>(spheres, edges, start, is_tilted(in_box.task.domain));
   }
   if (step == Step::exchange && options.exchange && end == StageEnd::converged && !loose_box)
     end = exchange_sizes<D>(spheres, edges, in_box, report, options);

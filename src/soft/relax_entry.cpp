@@ -1,7 +1,9 @@
+#include <utility>
 #include <vector>
 
 #include "jam/polish.hpp"
 #include "scene/layers_of_scene.hpp"
+#include "scene/tilted_box.hpp"
 #include "soft/ground.hpp"
 #include "soft/relax.hpp"
 #include "soft/size_exchange.hpp"
@@ -13,6 +15,7 @@ namespace {
 constexpr StageTraits traits = {.in_bed = true,
                                 .in_box = true,
                                 .box_between_walls = true,
+                                .in_tilted_box = true,
                                 .prefers_bed = true,
                                 .keeps_sizes = true,
                                 .places_expected = true,
@@ -24,7 +27,13 @@ constexpr StageTraits traits = {.in_bed = true,
                                 .reaches = Reaches::close_packing};
 
 /// What comes first from a start, or from an engine, begins at the packing fraction that it has there.
-void complete_relax(Relax& relax, Scene& scene, const schema::Section&) {
+void complete_relax(Relax& relax, Scene& scene, const schema::Section& section) {
+  if (schema::is_tilted(scene))
+    for (const auto& [key, is_asked] :
+         {std::pair("exchange", relax.exchange), std::pair("polish", relax.polish > 0),
+          std::pair("method", relax.method != RelaxMethod::fast),
+          std::pair("device", relax.device != RelaxDevice::processor)})
+      if (is_asked) section.refuse(key, "knows upright boxes only; leave it out, or \"tilt\" in [container]");
   if (relax.polish > 0 && traits.stands_in_bed(scene)) require_layers_that_stretch(scene);
   if ((scene.start.file || scene.engine) && scene.stages.front().as<Relax>() == &relax) return;
   if (!relax.phi0 && !traits.stands_in_bed(scene)) relax.phi0 = dense_start(scene.dimension());

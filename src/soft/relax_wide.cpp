@@ -223,7 +223,7 @@ StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Reporter& report
 }  // namespace
 
 bool is_for_wide_sizes(const FillTask& task, const Relax& options) {
-  return (task.dimension == 2 || task.dimension == 3) && !task.has_walls &&
+  return (task.dimension == 2 || task.dimension == 3) && !task.has_walls && !task.is_tilted &&
          options.method == RelaxMethod::fast && !(task.width_of_sizes < wide_sizes_from);
 }
 

@@ -61,11 +61,17 @@ Vector<3> in_frame(const Vector<dynamic>& p, const Frame& frame) {
   return frame.to_local(in_space);
 }
 
+/// Of a tilted box, in which the view draws no images, none.
+Vector<3> periods_of_view(const Domain& domain) {
+  return is_tilted(domain) ? Vector<3>::Zero() : boundary_in_space(domain).edges;
+}
+
 /// Depth of a sphere behind the walls, or the ends of the periods, which hide it.
 std::vector<double> depths_of(const Packing& packing, std::span<const std::uint32_t> of) {
   const int dimension = packing.spheres.dimension();
   const Bounds<dynamic> bounds = bounds_of<dynamic>(packing.domain);
-  const Vector<3> periods = boundary_in_space(packing.domain).edges;
+  const Vector<3> periods = is_tilted(packing.domain) ? Vector<3>(bounds_of(packing.domain).size())
+                                                      : boundary_in_space(packing.domain).edges;
   std::vector<double> depths(of.size(), bounds.size().maxCoeff());
   if (has_walls(packing.domain)) depths = wall_gaps(packing.spheres, packing.domain, of, packing.container);
   parallel_ranges(of.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
@@ -227,7 +233,7 @@ std::string domain_json(const Domain& domain, const Frame& frame, const ViewOpti
   return fmt::format("{{\"kind\":{},\"name\":{},\"walls\":{},\"lower\":{},\"upper\":{},\"periods\":{}{}}}",
                      json_text(kind), json_text(name_of(domain)), has_walls(domain),
                      json_list(in_frame(bounds.lower, frame)), json_list(in_frame(bounds.upper, frame)),
-                     json_list(boundary_in_space(domain).edges / frame.scale),
+                     json_list(periods_of_view(domain) / frame.scale),
                      std::visit(WallsJson{frame, options.most_triangles}, domain));
 }
 

@@ -45,6 +45,7 @@ inline Domain scaled(Domain shape, double factor) {
   if (auto* box = std::get_if<Box>(&shape)) {
     box->corner *= factor;
     box->size *= factor;
+    box->tilt = bernal::scaled(box->tilt, factor);
   } else if (auto* cylinder = std::get_if<Cylinder>(&shape)) {
     cylinder->base *= factor;
     cylinder->radius *= factor;

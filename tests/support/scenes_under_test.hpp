@@ -83,6 +83,15 @@ inline std::vector<SceneUnderTest> own_scenes() {
                                         relax);
   add("PeriodicBoxOfGivenSize",
       periodic + "size = [1.0, 1.2, 0.9]\n[spheres]\npacking_fraction = 0.55\nradius = 0.09\n" + relax);
+  add("TiltedBox", periodic +
+                       "size = [1.0, 1.2, 0.9]\ntilt = [0.5, -0.3, 0.4]\nscalable = true\n[spheres]\n"
+                       "count = 120\nradius = { distribution = \"uniform\", min = 0.8, max = 1.2 }\n" +
+                       relax);
+  add("TiltedBoxOfGivenSizeWithGaps",
+      periodic +
+          "size = [1.0, 1.2, 0.9]\ntilt = [1.4, 0.2, -0.5]\n[spheres]\npacking_fraction = 0.5\n"
+          "radius = 0.09\ngap = 0.005\n" +
+          relax);
   const std::string fly = "[[stage]]\ndo = \"fly\"\n";
   add("FlightBetweenWalls", periodic +
                                 "size = [1.0, 1.2, 0.9]\nwalls = [1]\n[spheres]\npacking_fraction = 0.3\n"

@@ -149,16 +149,35 @@ TEST(ImportDump, IsRefusedInOneLine) {
       {"a", "ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n99999999999999\n" + box.substr(43) + atoms, m},
       {"a:"});
   expect_refusal({"a", box + atoms, m}, {"a:9", "0 of them"});
-  expect_refusal({"a",
-                  "ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n0 9 1\n0 "
-                  "9 0\n0 9 0\n" +
-                      atoms + "1 1 1 1 1\n",
-                  m},
-                 {"a:6", "triclinic", "upright"});
+  expect_refusal(
+      {"a",
+       "ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS abc origin pp pp pp\n9 0 0 0\n"
+       "0 9 0 0\n0 0 9 0\n" +
+           atoms + "1 1 1 1 1\n",
+       m},
+      {"a:5", "triclinic"});
   expect_refusal({"a", box + "ITEM: ATOMS id x y z\n1 1 1 1\n2 2 2 2\n", m}, {"‹diameter›"});
   expect_refusal({"a", dump_head}, {"‹unit=mm›"});
   expect_refusal({"a", std::string(dump_head) + (box + atoms) + "1 1 1 1 1\n", m},
                  {"frame 2", "1 of them", "‹frame=1›"});
+}
+
+TEST(ImportLammps, ADumpOfATiltedBoxSaysTheBoundsOfItsCell) {
+  // xlo = 1, xhi = 11, xy = 2, xz = -3; ylo = 0, yhi = 8, yz = -1 (LAMMPS's Howto_triclinic).
+  const std::string box =
+      "ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS xy xz yz pp pp pp\n-2 13 2\n-1 8 -3\n"
+      "0 6 -1\n";
+  const ImportOptions m{.unit = Unit::m};
+  const Packing plain = packing_of({"a", box + "ITEM: ATOMS id x y z radius\n1 4 3 2 1\n2 6 5 4 1\n", m});
+  const Box& cell = std::get<Box>(plain.domain);
+  EXPECT_EQ(cell.size, Coordinates(Vector<3>(10, 8, 6)));
+  EXPECT_EQ(cell.tilt, (Tilt{2, -3, -1}));
+  EXPECT_EQ(plain.spheres.x, (std::vector<std::vector<double>>{{3, 5}, {3, 5}, {2, 4}}));
+  // The same places by shares of the cell vectors: x = xlo + 10 a + 2 b - 3 c, y = 8 b - c, z = 6 c.
+  const Packing shares =
+      packing_of({"a", box + "ITEM: ATOMS id xs ys zs radius\n1 0.5 0.5 0.5 1\n2 0 0 0 1\n", m});
+  EXPECT_EQ(shares.spheres.x, (std::vector<std::vector<double>>{{4.5, 0}, {3.5, 0}, {3, 0}}));
+  EXPECT_EQ(std::get<Box>(shares.domain).tilt, cell.tilt);
 }
 
 TEST(ImportLammps, DataOfSpheresAndOfAtoms) {
@@ -186,7 +205,18 @@ TEST(ImportLammps, DataOfSpheresAndOfAtoms) {
   expect_refusal({"a.data", head + "Atoms # atomic\n\n1 1 1 2 3\n2 1 4 5 6\n"}, {"‹diameter›"});
   std::string tilted = head;
   tilted.insert(tilted.find("\n\nMasses"), "\n0.5 0 0 xy xz yz");
-  expect_refusal({"a.data", tilted + "Atoms # sphere\n\n"}, {"a.data:9", "triclinic"});
+  const Packing in_tilted =
+      packing_of({"a.data", tilted + "Atoms # sphere\n\n1 1 1 2500 1 2 3\n2 1 1 2500 4 5 6\n"});
+  EXPECT_EQ(std::get<Box>(in_tilted.domain).tilt, (Tilt{0.5, 0, 0}));
+  expect_refusal(
+      {"a.data", tilted + "Atoms # sphere\n\n1 1 1 2500 1 2 3\n2 1 1 2500 4 5 6\n", {.periodic = "xy"}},
+      {"tilted"});
+  std::string again = tilted;
+  again.insert(again.find("\n\nMasses"), "\n0.25 0 0 xy xz yz");
+  expect_refusal({"a.data", again + "Atoms # sphere\n\n"}, {"a.data:10", "tilt"});
+  std::string general = head;
+  general.insert(general.find("\n\nMasses"), "\n9 0 1 avec");
+  expect_refusal({"a.data", general + "Atoms # sphere\n\n"}, {"a.data:9", "triclinic"});
   expect_refusal({"a.data",
                   "x\n\n99999999999 atoms\n\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\n\nAtoms # sphere\n\n",
                   {.unit = Unit::m}},
@@ -205,7 +235,7 @@ TEST(ImportExtxyz, LatticeAndProperties) {
   const Packing whole = packing_of({"a.xyz", first + second, {.unit = Unit::mm, .frame = 1}});
   EXPECT_FALSE(has_walls(whole.domain));
   EXPECT_EQ(packing_of({"a.xyz", "1\nplain\nX 1 2 3\n", {.radius = 1, .unit = Unit::mm}}).spheres.size(), 1U);
-  expect_refusal({"a.xyz", "1\nLattice=\"9 0 0 1 9 0 0 0 9\"\nX 1 2 3\n", {.radius = 1, .unit = Unit::mm}},
+  expect_refusal({"a.xyz", "1\nLattice=\"9 1 0 0 9 0 0 0 9\"\nX 1 2 3\n", {.radius = 1, .unit = Unit::mm}},
                  {"a.xyz:2", "triclinic"});
   expect_refusal({"a.xyz", first + second.substr(0, second.size() - 22), {.unit = Unit::mm}},
                  {"frame 2", "‹frame=1›"});

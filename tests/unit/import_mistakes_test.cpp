@@ -169,7 +169,11 @@ TEST(ImportMistakes, ALatticeIsUprightToRounding) {
   const ImportedPacking upright = imported(with("10 6e-16 0 -9e-12 10 0 0 0 10"));
   EXPECT_EQ(std::get<Box>(upright.packing.domain).size, Coordinates(Vector<3>(10, 10, 10)));
   expect_refusal(with("10 1.1e-11 0 0 10 0 0 0 10"), {"a.xyz:2", "triclinic"});
-  expect_refusal(with("1e6 0 0 1e-9 10 0 0 0 10"), {"triclinic"});  // of its own edge
+  // Of its own edge; and no cell is so slender.
+  expect_refusal(with("1e6 0 0 1e-9 10 0 0 0 10"), {"tilt", "longest edge"});
+  const ImportedPacking tilted = imported(with("10 0 0 -2 9 0 1 0.5 8"));
+  EXPECT_EQ(std::get<Box>(tilted.packing.domain).tilt, (Tilt{-2, 1, 0.5}));
+  expect_refusal(with("10 0 0 1 10 0 0 0 10\" pbc=\"T T F"), {"tilted"});
 }
 
 /// A LAMMPS data file of one atom with that first line.

@@ -36,8 +36,11 @@ struct PeriodicBox {
   int dimension = 3;
   std::vector<double> size = {};
   std::optional<double> edge = {};  ///< all its edges
-  std::vector<int> walls = {};      ///< axes, counted from 0, along which it ends at walls
-  bool scalable = false;            ///< the packing decides how large it is; size only gives its proportions
+  /// Of one of three dimensions without walls xy, xz and yz of its cell vectors (lx, 0, 0), (xy, ly, 0) and
+  /// (xz, yz, lz), of one of two dimensions xy; empty: it is upright.
+  std::vector<double> tilt = {};
+  std::vector<int> walls = {};  ///< axes, counted from 0, along which it ends at walls
+  bool scalable = false;        ///< the packing decides how large it is; size only gives its proportions
 };
 
 /// What is to be filled: `scene.container = Cylinder{.radius = 2, .height = 5}`. A box of two or three
