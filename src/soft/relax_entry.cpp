@@ -12,6 +12,7 @@ namespace {
 
 constexpr StageTraits traits = {.in_bed = true,
                                 .in_box = true,
+                                .in_plane = true,
                                 .box_between_walls = true,
                                 .prefers_bed = true,
                                 .keeps_sizes = true,
