@@ -90,6 +90,24 @@ Eigen::Matrix3d bend_of_triangle(const TriangleWall& wall, const Vector<3>& p, c
   return bend;
 }
 
+/// A place or direction of the plane z = 0 in space, as containers of two dimensions have them.
+template <int D>
+Vector<3> in_space(const Vector<D>& v) {
+  Vector<3> all = Vector<3>::Zero();
+  all.head<D>() = v;
+  return all;
+}
+
+/// Of other pieces than `PlaneWall`.
+template <class Piece>
+WallView<3> view_in_space(const Piece& piece, const Vector<3>& p) {
+  if (const auto* facet = std::get_if<Facet>(&piece)) return view_of_facet(*facet, p);
+  const auto& wall = std::get<TriangleWall>(piece);
+  const Vector<3> away = wall.prepared.offset(p);
+  const double distance = away.norm();
+  return {away / distance, distance - wall.inset};
+}
+
 }  // namespace
 
 template <int D>
@@ -102,18 +120,18 @@ Enclosure<D>::Enclosure(const Vector<D>& edges, const std::vector<bool>& walls) 
 }
 
 template <int D>
-Enclosure<D>::Enclosure(const Container& container) requires(D == 3)
+Enclosure<D>::Enclosure(const Container& container) requires(D == 2 || D == 3)
     : container_(&container), same_place_(rounding_of_place * container.resolution()) {}
 
 template <int D>
 void Enclosure<D>::pieces_near(const Vector<D>& p, double reach, std::vector<WallPiece<D>>& out) const {
   for (const PlaneWall<D>& plane : planes_)
     if ((p - plane.point).dot(plane.inward) < reach) out.push_back(plane);
-  if constexpr (D == 3) {
+  if constexpr (D == 2 || D == 3) {
     if (!container_) return;
     thread_local std::vector<NearFacet> near;
     near.clear();
-    container_->facets_near(p, reach, near);
+    container_->facets_near(in_space<D>(p), reach, near);
     for (const auto& [distance, facet] : near) {
       if (facet.kind == Facet::Kind::triangle)
         out.push_back(TriangleWall{facet.a, facet.b, facet.c, {facet.a, facet.b, facet.c}, facet.radius});
@@ -127,21 +145,21 @@ template <int D>
 WallView<D> view_of(const WallPiece<D>& piece, const Vector<D>& p) {
   if (const auto* plane = std::get_if<PlaneWall<D>>(&piece))
     return {plane->inward, (p - plane->point).dot(plane->inward)};
-  if constexpr (D == 3) {
-    if (const auto* facet = std::get_if<Facet>(&piece)) return view_of_facet(*facet, p);
-    const auto& wall = std::get<TriangleWall>(piece);
-    const Vector<3> away = wall.prepared.offset(p);
-    const double distance = away.norm();
-    return {away / distance, distance - wall.inset};
+  if constexpr (D == 2 || D == 3) {
+    const WallView<3> view = view_in_space(piece, in_space<D>(p));
+    return {view.normal.template head<D>(), view.distance};
   }
   return {Vector<D>::Zero(), 0};  // there are no others
 }
 
 template <int D>
 Eigen::Matrix<double, D, D> bend_of(const WallPiece<D>& piece, const Vector<D>& p, const WallView<D>& view) {
-  if constexpr (D == 3) {
-    if (const auto* facet = std::get_if<Facet>(&piece)) return bend_of_facet(*facet, p, view);
-    if (const auto* triangle = std::get_if<TriangleWall>(&piece)) return bend_of_triangle(*triangle, p, view);
+  if constexpr (D == 2 || D == 3) {
+    const WallView<3> seen{in_space<D>(view.normal), view.distance};
+    if (const auto* facet = std::get_if<Facet>(&piece))
+      return bend_of_facet(*facet, in_space<D>(p), seen).template topLeftCorner<D, D>();
+    if (const auto* triangle = std::get_if<TriangleWall>(&piece))
+      return bend_of_triangle(*triangle, in_space<D>(p), seen).template topLeftCorner<D, D>();
   }
   return Eigen::Matrix<double, D, D>::Zero();
 }

@@ -25,7 +25,8 @@ struct TriangleWall {
   double inset;
 };
 
-/// A smooth piece of the walls; in other than three dimensions all are planes.
+/// A smooth piece of the walls. In the plane a triangle is an edge of a polygon, on z = 0; in other than two
+/// and three dimensions all are planes.
 template <int D>
 using WallPiece = std::variant<PlaneWall<D>, Facet, TriangleWall>;
 
@@ -47,7 +48,8 @@ class Enclosure {
  public:
   /// For a box [0, edges) with walls along some axes.
   Enclosure(const Vector<D>& edges, const std::vector<bool>& walls);
-  explicit Enclosure(const Container& container) requires(D == 3);
+  /// Precondition: the container has D dimensions.
+  explicit Enclosure(const Container& container) requires(D == 2 || D == 3);
 
   /// Appends the pieces nearer than `reach` to p, nearest first, possibly with some that are farther.
   void pieces_near(const Vector<D>& p, double reach, std::vector<WallPiece<D>>& out) const;

@@ -67,8 +67,9 @@ class FewInBed {
     if (in_bed_.task.few_places.size() == count) return stand(first_drawn(in_bed_.task.few_places));
     Spheres<3> spheres = in_bed_.drawn(count).spheres;
     spheres.resize(count);
-    if (volume_of(spheres) > most_volume()) return false;
-    const double share = volume_of(spheres) / bed.container().volume();
+    const double volume = in_bed_.volume_of(spheres);
+    if (volume > most_volume()) return false;
+    const double share = volume / bed.container().volume();
     const double enough = 1 + gap_ / std::ranges::min(spheres.r);
     const FewPacked packed = pack_few(spheres.r, bed.container(), bed.places(),
                                       {.enough = enough,

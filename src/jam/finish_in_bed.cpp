@@ -47,7 +47,7 @@ StageEnd finish_in_bed(StageEnd end, double polish, SpheresInBed& in_bed, Report
   const Jammed jammed = polish_in_container(
       spheres, bed.container(), symmetries, closest, report.monitor,
       [&](double done, double overlap) {
-        const double filled = volume_of(spheres) / in_bed.task.container->volume();
+        const double filled = in_bed.volume_of(spheres) / in_bed.task.container->volume();
         report.milestone("polish", spheres.size(), filled, overlap, done);
       },
       report.checkpoints);
@@ -77,7 +77,8 @@ StageEnd finish_in_bed(StageEnd end, double polish, SpheresInBed& in_bed, Report
     const double gap = std::max(polish, closest + 2 * room);
     const Spheres<3> now = in_bed.bed().spheres();
     const std::optional<std::string> open =
-        what_is_open(gap, 3, now.size(), symmetries, contacts_at(gap, now, in_bed.bed().container()));
+        what_is_open(gap, in_bed.bed().dimension(), now.size(), symmetries,
+                     contacts_at(gap, now, in_bed.bed().container()));
     return end_of_polish(jammed.end == StageEnd::converged ? end : jammed.end, polish, open, report);
   }
   report.missed = "the spheres could not be polished";

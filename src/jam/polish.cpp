@@ -362,34 +362,34 @@ StageEnd polish(Spheres<D>& spheres, Vector<D>& edges, double tolerance, const S
   const StageEnd end = act.run();
   const auto& polished = dynamic_cast<const JammingEnergy<D>&>(act.soft());
   polished.write(spheres);
-  if (walls > 0)
-    edges *= polished.scale();
-  else
-    edges = polished.edges();
+  edges = walls > 0 ? Vector<D>(edges * polished.scale()) : polished.edges();
   return end;
 }
 
 Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
                            double tolerance, const Monitor& monitor,
                            const std::function<void(double, double)>& report, Checkpoints* checkpoints) {
-  const Vector<3> edges = edges_around(container, std::ranges::max(spheres.r));
-  auto soft = std::make_unique<JammingEnergy<3>>(spheres, edges, std::make_shared<Enclosure<3>>(container));
-  Polish act(std::move(soft),
-             {.tolerance = tolerance,
-              .slenderness = container.bounds().size().maxCoeff() / std::ranges::min(spheres.r),
-              .symmetries = symmetries,
-              .start = loose_start,
-              .most_steps = most_steps_when_loose,
-              .most_climbs = most_climbs,
-              .least_scale = 1 / Jammed::most_growth,
-              .monitor = monitor,
-              .report = report,
-              .checkpoints = checkpoints});
-  const StageEnd end = act.run();
-  Jammed jammed{end, spheres, 1, act.too_loose(), act.held(), act.held_volume()};
-  dynamic_cast<const JammingEnergy<3>&>(act.soft()).write_to_scale(jammed.spheres);
-  jammed.growth = (1 - act.soft().largest_overlap()) / act.soft().scale();
-  return jammed;
+  return with_dimension(container.dimension(), std::integer_sequence<int, 2, 3>{}, [&](auto axes) {
+    constexpr int D = decltype(axes)::value;
+    const Vector<D> edges = edges_around(container, std::ranges::max(spheres.r)).template head<D>();
+    Spheres<D> polished = along_axes<D>(spheres);
+    Polish act(std::make_unique<JammingEnergy<D>>(polished, edges, std::make_shared<Enclosure<D>>(container)),
+               {.tolerance = tolerance,
+                .slenderness = container.bounds().size().maxCoeff() / std::ranges::min(spheres.r),
+                .symmetries = symmetries,
+                .start = loose_start,
+                .most_steps = most_steps_when_loose,
+                .most_climbs = most_climbs,
+                .least_scale = 1 / Jammed::most_growth,
+                .monitor = monitor,
+                .report = report,
+                .checkpoints = checkpoints});
+    Jammed jammed{act.run(), spheres, 1, act.too_loose(), act.held(), act.held_volume()};
+    dynamic_cast<const JammingEnergy<D>&>(act.soft()).write_to_scale(polished);
+    std::copy_n(polished.x.begin(), D, jammed.spheres.x.begin());
+    jammed.growth = (1 - act.soft().largest_overlap()) / act.soft().scale();
+    return jammed;
+  });
 }
 
 #define BERNAL_INSTANTIATE(D) \

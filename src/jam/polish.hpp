@@ -68,11 +68,12 @@ struct Jammed {
   double held_volume;  ///< their share of the volume of all
 };
 
-/// The same in a container, which does not change: it cannot dilate and the number of spheres is fixed, so
-/// all radii grow by one factor until the spheres jam. In units of the radii it is the container that
-/// shrinks, so the problem is the same. `symmetries` is `symmetries_of` its domain. Precondition: there are
-/// spheres, with centres inside. Cost: mostly products with the Hessian, 10 ns a contact each, tens to
-/// hundreds a Newton step, and one or two thousand steps: 6 to 14 s for 1,000 spheres.
+/// The same in a container of two or three dimensions, which does not change: it cannot dilate and the number
+/// of spheres is fixed, so all radii grow by one factor until the spheres jam. In units of the radii it is
+/// the container that shrinks, so the problem is the same. `symmetries` is `symmetries_of` its domain.
+/// Precondition: there are spheres, with centres inside; discs on z = 0, where they stay. Cost: mostly
+/// products with the Hessian, 10 ns a contact each, tens to hundreds a Newton step, and one or two thousand
+/// steps: 6 to 14 s for 1,000 spheres.
 Jammed polish_in_container(const Spheres<3>& spheres, const Container& container, int symmetries,
                            double tolerance, const Monitor& monitor,
                            const std::function<void(double done, double largest_overlap)>& report,
@@ -81,23 +82,23 @@ Jammed polish_in_container(const Spheres<3>& spheres, const Container& container
 /// The end of every stage that packs a bed: polishes contacts to gap ratios below `polish`, if that is above
 /// 0, or to the skin of the bed if that is wider. All sizes grow by one factor, stored in `Supply::scale`
 /// for later stages. Returns `end`, or the reason why polishing ended. A bed too loose to be polished does
-/// not change, and `Reporter::missed` says so; this includes a bed in which a few spheres, wedged between walls,
-/// stop the growth while the rest is loose. Closed contacts are counted on the final positions
+/// not change, and `Reporter::missed` says so; this includes a bed in which a few spheres, wedged between
+/// walls, stop the growth while the rest is loose. Closed contacts are counted on the final positions
 /// (`what_is_open`).
 StageEnd finish_in_bed(StageEnd end, double polish, SpheresInBed& in_bed, Reporter& report);
 
 /// The end of every stage with a box that follows from the packing: polishes contacts to the overlap ratio
 /// `polish`, if that is above 0; scales the box until nothing overlaps more than allowed; moves the spheres
 /// apart in proportion if the scene asks for a larger box; and stores all in `work`. Returns `end`, or the
-/// reason why polishing ended; `Reporter::missed` says what is open, by the final positions (`what_is_open`) or
-/// because of the larger box. Cost: a search of all near pairs, and `polish`.
+/// reason why polishing ended; `Reporter::missed` says what is open, by the final positions (`what_is_open`)
+/// or because of the larger box. Cost: a search of all near pairs, and `polish`.
 template <int D>
 StageEnd finish_in_periodic_box(Spheres<D> spheres, Vector<D> edges, StageEnd end, double polish,
                                 SpheresInBox& in_box, Reporter& report);
 
 /// The end of a stage that polished to `polish` with the result `end`; `open` states which contacts are open.
-/// Contacts that do not hold the spheres mean not converged, whatever the solver returned; `Reporter::missed` says
-/// so.
+/// Contacts that do not hold the spheres mean not converged, whatever the solver returned; `Reporter::missed`
+/// says so.
 StageEnd end_of_polish(StageEnd end, double polish, const std::optional<std::string>& open, Reporter& report);
 
 /// The end of a stage whose box is larger than the spheres need: if `polish` is above 0, contacts that should

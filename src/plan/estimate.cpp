@@ -35,6 +35,9 @@ constexpr double wall_deficit_flat = 0.165;
 /// cylinders, a sphere and CAD parts (but 0.013 less in the sphere with x = 1.2 and 0.03 less in a part with
 /// x = 1), and to 0.01 to 0.035 more between flat walls, along which spheres order themselves the more the
 /// longer it takes. To begin 0.008 higher takes four times as long (300,000 lognormal spheres in two parts).
+/// Of discs the same holds: 38 to 42,000 in squares, a silo with a wedge and an L came to what is expected,
+/// and where as many as could be placed were asked for to 0.02 more of two sizes 1:1.4, 0.03 of lognormal and
+/// 0.04 to 0.06 of equal ones, which crystallise.
 constexpr double share_relaxed = 0.975, wall_deficit_relaxed = 0.115;
 /// And where only a part of the container is wide enough for the larger spheres.
 constexpr double share_in_thin_parts = 0.80;

@@ -38,13 +38,8 @@ struct WorstPair {
 /// What frees spheres of their overlap.
 constexpr std::string_view relax_frees = "begin with \"relax\", which pushes spheres apart and inside";
 
-std::string_view remedy_in_bed(int dimension) {
-  return dimension == 2 ? "move it, or leave it out; no stage does that for discs between walls"
-                        : relax_frees;
-}
-
 [[noreturn]] void refuse_overlap(const StartSpheres& start, const WorstPair& worst, std::string_view stage,
-                                 double gap, std::string_view remedy = relax_frees) {
+                                 double gap) {
   const std::string how =
       worst.ratio > 0
           ? fmt::format("overlaps that of line {} by a ratio of {:.3g}",
@@ -55,9 +50,10 @@ std::string_view remedy_in_bed(int dimension) {
         start, worst.j,
         fmt::format("this sphere is nearer to that of line {} than the gap of {:g}, and no pair may be for "
                     "\"{}\": {}",
-                    start.first_line + static_cast<int>(worst.i), gap, stage, remedy));
+                    start.first_line + static_cast<int>(worst.i), gap, stage, relax_frees));
   }
-  refuse(start, worst.j, fmt::format("this sphere {}, and no pair may for \"{}\": {}", how, stage, remedy));
+  refuse(start, worst.j,
+         fmt::format("this sphere {}, and no pair may for \"{}\": {}", how, stage, relax_frees));
 }
 
 template <int D>
@@ -157,9 +153,9 @@ void take_start_in_bed(const Plan& plan, const Frame& frame, SpheresInBed& in_be
         refuse(start, i,
                plan.scene.wall_gap > 0
                    ? fmt::format("this sphere is nearer to the wall than the gap of {:g}: {}",
-                                 plan.scene.wall_gap, remedy_in_bed(container.dimension()))
+                                 plan.scene.wall_gap, relax_frees)
                    : fmt::format("this sphere protrudes from the container by {:.3g} of its radius: {}",
-                                 1 - container.clearance(c) / r, remedy_in_bed(container.dimension())));
+                                 1 - container.clearance(c) / r, relax_frees));
     }
     grid.for_each_near(c, r + gap, [&](std::uint32_t j) {
       const double distance = container.boundary().minimum_image(c - spheres.center(j)).norm();
@@ -172,8 +168,7 @@ void take_start_in_bed(const Plan& plan, const Frame& frame, SpheresInBed& in_be
     spheres.push_back(c, r);
     if (stands[i]) bed.insert(c, r, static_cast<std::uint32_t>(i));
   }
-  if (worst.ratio > -1 && !frees_overlap)
-    refuse_overlap(start, worst, first.name(), plan.scene.gap, remedy_in_bed(container.dimension()));
+  if (worst.ratio > -1 && !frees_overlap) refuse_overlap(start, worst, first.name(), plan.scene.gap);
   in_bed.supply->set_placed(stands);
   in_bed.begun = n;
   if (bed.size() < n) in_bed.crowded_start = std::move(spheres);

@@ -80,8 +80,8 @@ void check_target(const Scene& scene) {
     fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
 }
 
-/// The stage that packs any scene, or makes the bed that is asked for; in a bed of two dimensions all that
-/// work there, one after the other.
+/// The stage that packs any scene, or makes the bed that is asked for; in a container of two dimensions those
+/// that settle discs, one after the other.
 void take_default_stages(Scene& scene) {
   scene.stages_are_default = true;
   if (const auto* box = std::get_if<PeriodicBox>(&scene.container);
@@ -92,7 +92,9 @@ void take_default_stages(Scene& scene) {
                 scene.target.where);
   const bool in_plane = !scene.is_periodic() && scene.dimension() == 2, bed = scene.target.bed.is_asked();
   for (const StageTable* table : stage_tables())
-    if (in_plane ? table->traits.in_plane : bed ? table->traits.makes_bed : table->traits.is_default) {
+    if (in_plane ? table->traits.is_default_in_plane
+        : bed    ? table->traits.makes_bed
+                 : table->traits.is_default) {
       scene.stages.push_back(table->make());
       scene.stages.back().locations.whole.file = scene.file.string();
     }

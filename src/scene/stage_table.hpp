@@ -29,9 +29,10 @@ struct StageTraits {
   bool fills_given_box = false;  ///< it needs a box of given size and the end that it is filled to
   bool only_moves = false;       ///< it places no sphere
   bool frees_bed = false, frees_box = false;  ///< it may begin with spheres that overlap there
-  bool joins_start = false;  ///< in a box it finds others their places among those that have some
-  bool is_default = false;   ///< it packs a scene that names no stage
-  bool makes_bed = false;    ///< it makes the bed that a scene asks for, and where that names no stage
+  bool joins_start = false;          ///< in a box it finds others their places among those that have some
+  bool is_default = false;           ///< it packs a scene that names no stage
+  bool is_default_in_plane = false;  ///< it is one of those that do in containers of two dimensions
+  bool makes_bed = false;  ///< it makes the bed that a scene asks for, and where that names no stage
   Reaches reaches = Reaches::nothing;
 
   /// Whether spheres stand in a bed for it there: in every container, and in a periodic box of three

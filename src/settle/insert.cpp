@@ -204,6 +204,7 @@ const StageEntry& entry_of<Insert>() {
            .prefers_bed = true,
            .least_dimension = 2,
            .most_dimensions = 3,
+           .is_default_in_plane = true,
            .reaches = Reaches::insertion}),
       .act_in_bed = of_options(insert),
       .act_in_box = of_options(insert_crystal_in_box),

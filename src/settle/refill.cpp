@@ -154,7 +154,7 @@ const StageEntry& entry_of<Refill>() {
                                      "longest way in one sweep of shaking, in mean radii", above(0, 100))},
                              inside(&Shake::compress, compression_keys())))),
            .choices = ends_of_compression()},
-          {.in_bed = true, .in_plane = true, .reaches = Reaches::settled}),
+          {.in_bed = true, .in_plane = true, .is_default_in_plane = true, .reaches = Reaches::settled}),
       .act_in_bed = of_options(refill),
       .may_bring = {"refilling", "neighbour lists", "compression", "shaking"},
       .effects = of_options(effects_of_refilling),

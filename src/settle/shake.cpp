@@ -49,7 +49,7 @@ const StageEntry& entry_of<Shake>() {
                        above(0, 100))},
                inside(&Shake::compress, compression_keys())),
            .choices = ends_of_compression()},
-          {.in_bed = true, .in_plane = true, .only_moves = true}),
+          {.in_bed = true, .in_plane = true, .only_moves = true, .is_default_in_plane = true}),
       .act_in_bed = of_options(shake),
       .may_bring = {"neighbour lists", "shaking", "compression"},
       .effects = of_options(effects_of_shaking),

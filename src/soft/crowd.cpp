@@ -51,7 +51,7 @@ template <class Ground>
 void Crowd<Ground>::measure() {
   const Pace pace = pace_for(0);
   const auto look = [&] {
-    largest_overlap_ = ground_.engine().sweep_and_measure(pace.omega * D / 3);
+    largest_overlap_ = ground_.engine().sweep_and_measure(over_relaxation(pace));
     ++sweeps_;
   };
   const bool worn = Ground::crowds_wear_lists && largest_overlap_ >= crowded;
@@ -93,7 +93,7 @@ StageEnd Crowd<Ground>::settle(Settling& so_far, const std::function<bool()>& st
     ground_.engine().wear_lists(Ground::crowds_wear_lists && largest_overlap_ >= crowded ? wear_of_crowd
                                                                                          : pace.wear);
     while (sweeps + 1 < sweeps_a_look && end != StageEnd::cancelled) {
-      ground_.engine().sweep(pace.omega * D / 3);
+      ground_.engine().sweep(over_relaxation(pace));
       ++sweeps_;
       ++sweeps;
       if (stop()) end = StageEnd::cancelled;
@@ -118,7 +118,7 @@ StageEnd Crowd<Ground>::settle(Settling& so_far, const std::function<bool()>& st
 template <class Ground>
 double Crowd<Ground>::exchange(SizeExchange& sizes, double step) {
   ground_.engine().exchange(sizes.deal(ground_.engine().forces(), step));
-  for (int k = 1; k < sweeps_an_exchange; ++k) ground_.engine().sweep(pace_for(0).omega * D / 3);
+  for (int k = 1; k < sweeps_an_exchange; ++k) ground_.engine().sweep(over_relaxation(pace_for(0)));
   sweeps_ += sweeps_an_exchange - 1;
   measure();
   return energy_of(squeeze_);
@@ -159,7 +159,7 @@ template <class Ground>
 void Crowd<Ground>::burst() {
   ground_.swell(Ground::burst_swelling);
   if (Ground::crowds_wear_lists) ground_.engine().wear_lists(wear_of_crowd);
-  for (int k = 0; k < burst_sweeps; ++k) ground_.engine().sweep(pace_for(0).omega * D / 3);
+  for (int k = 0; k < burst_sweeps; ++k) ground_.engine().sweep(over_relaxation(pace_for(0)));
   sweeps_ += burst_sweeps;
   ground_.swell(1);
 }

@@ -112,6 +112,10 @@ class Crowd {
   };
   StageEnd settle(Settling& so_far, const std::function<bool()>& stop, const std::function<void()>& milestone,
                   double most_sweeps);
+  /// As `pace_for` says of other dimensions than three.
+  float over_relaxation(const Pace& pace) const {
+    return pace.omega * static_cast<float>(ground_.axes()) / 3;
+  }
   void measure();
   std::vector<std::uint32_t> most_squeezed(std::size_t count) const;
 

@@ -29,6 +29,9 @@ class ContainerGround {
   /// are stuck.
   static constexpr bool crowds_wear_lists = true;
 
+  /// Along how many axes spheres move: discs stay in the plane z = 0, where nothing pushes them out of it.
+  int axes() const { return container_->dimension(); }
+
   /// Both outlive this. `snug` says that no sphere has more room between the walls than it takes. Then walls
   /// push a little less than spheres do, so that spheres come free of overlap.
   ContainerGround(const Container& container, const Places& places, bool snug = false)
@@ -77,6 +80,8 @@ class BoxGround {
   static constexpr double burst_swelling = D <= 4 ? 1.02 : 1.04;
   static constexpr std::size_t always_stay = 1;
   static constexpr bool crowds_wear_lists = false;
+
+  static int axes() { return D; }
 
   /// The spheres are relaxed with the share 1 - `allowed` of their radii, `allowed` being the overlap ratio
   /// that the result may have. Axes with `walls` (empty: none) keep whole spheres between them. Precondition:

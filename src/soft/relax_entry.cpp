@@ -14,6 +14,7 @@ namespace {
 
 constexpr StageTraits traits = {.in_bed = true,
                                 .in_box = true,
+                                .in_plane = true,
                                 .box_between_walls = true,
                                 .in_tilted_box = true,
                                 .prefers_bed = true,

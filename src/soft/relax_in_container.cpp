@@ -45,8 +45,10 @@ class Relaxation {
         options_(options),
         random_(report.random(Stream::relax)),
         skin_(in_bed.bed().skin() > thin_skin * in_bed.supply->smallest() ? in_bed.bed().skin() : 0),
-        gain_(options.exchange ? gain_by_exchange(SizeExchange(in_bed.supply->radii(), 3).spread(), true)
-                               : 1),
+        gain_(options.exchange
+                  ? gain_by_exchange(SizeExchange(in_bed.supply->radii(), in_bed.bed().dimension()).spread(),
+                                     true)
+                  : 1),
         snug_(SnugPlaces(in_bed, report).all_touch()),
         crowd_(ContainerGround(in_bed.bed().container(), in_bed.bed().places(), snug_),
                spheres_to_start_from()),
@@ -194,8 +196,9 @@ class Relaxation {
     }
     sweeps_of_exchange_ += crowd_.sweeps() - sweeps_before;
     if (free && crowd_.size() > ordinary.size()) {
-      report_.account = fmt::format("an exchange of sizes has made room for {:.1f} % more",
-                                    100 * (volume_of(crowd_.spheres()) / volume_of(ordinary) - 1));
+      report_.account =
+          fmt::format("an exchange of sizes has made room for {:.1f} % more",
+                      100 * (in_bed_.volume_of(crowd_.spheres()) / in_bed_.volume_of(ordinary) - 1));
       return;
     }
     report_.account = cancelled_ ? "the exchange of sizes was not finished, and left no trace"
@@ -244,13 +247,14 @@ class Relaxation {
 
   /// Those that the walls leave less room than the margin, which never come free of overlap.
   void place_snugly() {
-    const double wanted = volume_of(in_bed_.drawn(target_count_).spheres) / in_bed_.task.container->volume();
-    SnugPlaces(in_bed_, report_).complete(wanted);
+    SnugPlaces(in_bed_, report_)
+        .complete(in_bed_.volume_of_drawn(target_count_) / in_bed_.task.container->volume());
   }
 
   void tell() { tell("relax", crowd_.done()); }
   void tell(std::string_view stage, double done) {
-    report_.milestone(stage, crowd_.size(), volume_of(crowd_.spheres()) / in_bed_.task.container->volume(),
+    report_.milestone(stage, crowd_.size(),
+                      in_bed_.volume_of(crowd_.spheres()) / in_bed_.task.container->volume(),
                       crowd_.largest_overlap(), done);
   }
 
@@ -278,7 +282,7 @@ class Relaxation {
 /// Whether what is asked for is so little that spheres need not push each other.
 bool is_dilute(const SpheresInBed& in_bed) {
   const Task& task = in_bed.task;
-  return !task.target.is_open() && volume_of(in_bed.drawn(in_bed.supply->wanted()).spheres) <=
+  return !task.target.is_open() && in_bed.volume_of_drawn(in_bed.supply->wanted()) <=
                                        dilute * task.attainable * task.container->volume();
 }
 

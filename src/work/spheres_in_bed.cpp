@@ -39,9 +39,9 @@ FirstDrawn SpheresInBed::drawn(std::size_t count) const {
   return drawn;
 }
 
-double SpheresInBed::volume_of_drawn(std::size_t count) const {
+double SpheresInBed::volume_of(const Spheres<3>& spheres) const {
   double volume = 0;
-  for (const double r : drawn(count).spheres.r) volume += ball_volume(bed().dimension(), r);
+  for (const double r : spheres.r) volume += ball_volume(bed().dimension(), r);
   return volume;
 }
 
@@ -51,7 +51,7 @@ const Room& SpheresInBed::roomiest() const {
     // Of one place in the middle, where nothing is nearer than what bounds the largest sphere, that is known.
     const Room middle{container.bounds().center(), container.clearance(container.bounds().center())};
     roomiest_ = middle;
-    const bool is_part = container.volume() < part_of_domain * volume_of(task.domain);
+    const bool is_part = container.volume() < part_of_domain * bernal::volume_of(task.domain);
     if (is_faceted(task.domain) || (is_part && middle.radius < well_within * supply->largest())) {
       const LargestRoom known = largest_room(container);
       if (is_faceted(task.domain) || known.radius > middle.radius) roomiest_ = known;

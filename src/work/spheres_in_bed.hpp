@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,6 +20,15 @@ double volume_of(const Spheres<D>& spheres) {
   double sum = 0;
   for (const double r : spheres.r) sum += ball_volume(static_cast<int>(spheres.x.size()), r);
   return sum;
+}
+
+/// Of the spheres of a bed, which are discs in the plane z = 0 where D is 2, the coordinates that there are.
+template <int D>
+Spheres<D> along_axes(const Spheres<3>& in_bed) {
+  Spheres<D> spheres;
+  std::copy_n(in_bed.x.begin(), D, spheres.x.begin());
+  spheres.r = in_bed.r;
+  return spheres;
 }
 
 /// The first of the drawn sequence, in its order, of which some have places.
@@ -53,8 +63,10 @@ struct SpheresInBed {
   std::size_t target_count() const;
   /// At least `count` of the sequence, and up to the last that stands in the bed; those have places.
   FirstDrawn drawn(std::size_t count) const;
+  /// Of spheres of a bed; of discs their area.
+  double volume_of(const Spheres<3>& spheres) const;
   /// Of so many of the sequence, or all that stand in the bed if these are more.
-  double volume_of_drawn(std::size_t count) const;
+  double volume_of_drawn(std::size_t count) const { return volume_of(drawn(count).spheres); }
   /// The roomiest place of the container, as far as it is known. Looked for once.
   const Room& roomiest() const;
   /// Whether the walls leave a sphere of this radius less room than the skin, so that it only fits touching.

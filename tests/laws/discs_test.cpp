@@ -13,8 +13,8 @@
 #include "bernal/result/write_packing.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "support/discs.hpp"
 #include "support/folder.hpp"
-#include "support/polygons.hpp"
 #include "support/refusals.hpp"
 #include "support/written_files.hpp"
 
@@ -24,51 +24,14 @@ namespace discs_test {
 using testing::Folder;
 using testing::text_of;
 
-struct Container2 {
-  std::string name, toml;
-  Domain domain;
-};
-
-std::string toml_of(const Polygon& polygon) {
-  Scene scene;
-  scene.container = polygon;
-  const std::string toml = scene_as_toml(scene);
-  const std::size_t from = toml.find("[container]");
-  return toml.substr(from, toml.find("\n[spheres]") - from);
-}
-
-std::vector<Container2> containers() {
-  std::vector<Container2> all = {
-      {"Box", "[container]\nkind = \"box\"\nsize = [12, 9]\ncorner = [-3, 5]\n", Box{{-3, 5}, {12, 9}}}};
-  for (const auto& [name, polygon] :
-       {std::pair("Triangle", test::triangle()), std::pair("LShape", test::clockwise(test::l_shape())),
-        std::pair("Hole", test::with_hole()), std::pair("Needle", test::needle())})
-    all.push_back({name, toml_of(polygon), polygon});
-  return all;
-}
-
-std::string scene_in(const std::string& container, const std::string& spheres) {
-  return "unit = \"mm\"\nseed = 5\n" + container + "[spheres]\n" + spheres + "\n";
-}
-const std::string equal = "fill = true\nradius = 0.2";
-const std::string lognormal =
-    "fill = true\ndiameter = { distribution = \"lognormal\", median = 0.3, sigma = 0.3, basis = \"number\" }";
-
-Packing packed(const std::string& toml, int threads = 2) {
-  RunOptions options;
-  options.threads = threads;
-  return run(build(parse_scene(toml, "test.toml")), options);
-}
-
-/// By plain doubles, every disc against every other one and against the walls.
-void expect_free_of_overlap(const Packing& packing, const Domain& domain) {
-  const Spheres<2> discs = packing.spheres.in<2>();
-  for (std::size_t i = 0; i < discs.size(); ++i) {
-    EXPECT_GE(static_cast<double>(test::precise_clearance_flat(domain, discs.center(i))), discs.r[i]) << i;
-    for (std::size_t j = 0; j < i; ++j)
-      ASSERT_GE((discs.center(i) - discs.center(j)).norm(), discs.r[i] + discs.r[j]) << i << " " << j;
-  }
-}
+using test::Container2;
+using test::containers;
+using test::equal;
+using test::expect_free_of_overlap;
+using test::lognormal;
+using test::packed;
+using test::scene_in;
+using test::toml_of;
 
 TEST(Discs, SettleInEveryContainerAndAreCertified) {
   for (const Container2& in : containers()) {
@@ -186,7 +149,7 @@ TEST(Discs, WhatCannotBeDoneIsRefusedInOneLine) {
   const auto said = [&](const std::string& container, const std::string& rest) {
     return testing::error_of(scene_in(container, "count = 9\nradius = 0.2\n" + rest));
   };
-  for (const std::string stage : {"relax", "grow", "fly"}) {
+  for (const std::string stage : {"grow", "fly"}) {
     const std::string what = said(box, "[[stage]]\ndo = \"" + stage + "\"");
     EXPECT_NE(what.find("cannot work in a container of two dimensions; there, the stages are \"insert\", "
                         "\"compress\", \"shake\", \"refill\""),
@@ -277,7 +240,7 @@ TEST(Discs, MayStartFromAFile) {
     EXPECT_EQ(overlap.location().line, 3);
     EXPECT_NE(std::string(overlap.what()).find("overlaps that of line 2 by a ratio of 0.5"),
               std::string::npos);
-    EXPECT_EQ(std::string(overlap.what()).find("relax"), std::string::npos) << "which works in no such bed";
+    EXPECT_NE(std::string(overlap.what()).find("begin with \"relax\""), std::string::npos);
     EXPECT_NE(std::string(said("x,y,r\n7.5,2,1\n").what()).find("protrudes from the container by 0.5"),
               std::string::npos);
     EXPECT_NE(std::string(said("x,y,z,r\n2,2,2,1\n").what()).find("3 dimensions, but the scene has 2"),
