@@ -22,9 +22,11 @@ std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, boo
                                       Reporter& report) {
   SizeExchange sizes(spheres.r, D);
   if (D == 1 || !sizes.is_of_use()) return std::nullopt;
+  const double from_periods_to_edges = edges.minCoeff() / in_box.shortest_period(edges);
   const double least_edge =
-      std::max(edges.minCoeff() / most_shrinking, 2 * most_shrinking * std::ranges::max(spheres.r));
-  SoftEngine<D> engine(spheres, edges, in_box.task.walls, 1, wide);
+      std::max(edges.minCoeff() / most_shrinking,
+               2 * most_shrinking * std::ranges::max(spheres.r) * from_periods_to_edges);
+  SoftEngine<D> engine(spheres, edges, in_box.task.walls, 1, wide, in_box.task.tilt(edges));
   double edge = edges.minCoeff(), overlap = 0;
   const float omega = pace_for(0).omega * D / 3;
   const auto compress = [&](double factor) {

@@ -88,14 +88,7 @@ Vector<dynamic> edges_to_start_from(const SpheresInBox& in_box, const Relax& opt
     const double asked = in_box.task.target_edges->prod();
     if (is_loose(in_box) || edges.prod() > asked) edges = with_volume((1 - room_to_grow) * asked);
   }
-  double shortest = edges.minCoeff();
-  if (const auto* box = std::get_if<Box>(&in_box.task.domain); box && box->is_tilted()) {
-    Box there = *box;
-    there.size = edges;
-    there.tilt = in_box.task.tilt(edges);
-    shortest = shortest_period(there);
-  }
-  const double needed = 2 * std::ranges::max(in_box.spheres.r) / shortest;
+  const double needed = 2 * std::ranges::max(in_box.spheres.r) / in_box.shortest_period(edges);
   return needed > 1 ? Vector<dynamic>(edges * (needed * (1 + 4 * tolerance::roundoff))) : edges;
 }
 

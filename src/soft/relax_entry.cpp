@@ -31,8 +31,7 @@ constexpr StageTraits traits = {.in_bed = true,
 void complete_relax(Relax& relax, Scene& scene, const schema::Section& section) {
   if (schema::is_tilted(scene))
     for (const auto& [key, is_asked] :
-         {std::pair("exchange", relax.exchange), std::pair("polish", relax.polish > 0),
-          std::pair("method", relax.method != RelaxMethod::fast),
+         {std::pair("polish", relax.polish > 0), std::pair("method", relax.method != RelaxMethod::fast),
           std::pair("device", relax.device != RelaxDevice::processor)})
       if (is_asked) section.refuse(key, "knows upright boxes only; leave it out, or \"tilt\" in [container]");
   if (relax.polish > 0 && traits.stands_in_bed(scene)) require_layers_that_stretch(scene);

@@ -33,6 +33,10 @@ struct SpheresInBox {
   double needed_volume = 0;
 
   int dimension() const { return spheres.dimension(); }
+  /// The least distance between a sphere and an image of it in the box with these edges, walls aside.
+  double shortest_period(const Vector<dynamic>& of_edges) const {
+    return bernal::shortest_period(periodic_box(of_edges, {}, task.tilt(of_edges)));
+  }
   double volume_of_spheres() const { return volume_of(spheres); }
   /// Of all spheres, whether they have places or not.
   double packing_fraction() const { return volume_of_spheres() / edges.prod(); }

@@ -92,6 +92,11 @@ inline std::vector<SceneUnderTest> own_scenes() {
           "size = [1.0, 1.2, 0.9]\ntilt = [1.4, 0.2, -0.5]\n[spheres]\npacking_fraction = 0.5\n"
           "radius = 0.09\ngap = 0.005\n" +
           relax);
+  add("ExchangedInATiltedBox",
+      periodic +
+          "size = [1.0, 1.2, 0.9]\ntilt = [0.5, -0.3, 0.4]\nscalable = true\n[spheres]\ncount = 100\n"
+          "radius = { distribution = \"lognormal\", median = 1.0, sigma = 0.3 }\n"
+          "[[stage]]\ndo = \"relax\"\nalpha = 1\nexchange = true\n");
   const std::string fly = "[[stage]]\ndo = \"fly\"\n";
   add("FlightBetweenWalls", periodic +
                                 "size = [1.0, 1.2, 0.9]\nwalls = [1]\n[spheres]\npacking_fraction = 0.3\n"
