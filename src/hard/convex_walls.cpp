@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
-#include <fmt/format.h>
-
-#include "bernal/core/error.hpp"
 #include "core/order.hpp"
 #include "near/box_tree.hpp"
 
@@ -19,7 +17,8 @@ constexpr int most_fits = 16;
 /// In tolerances: corners this far inside of a plane still belong to it, and none may lie farther outside.
 constexpr double band = 2, outside = 4;
 
-Wall<3> plane(const Vector<3>& normal, const Vector<3>& point) {
+template <int D>
+Wall<D> plane(const Vector<D>& normal, const Vector<D>& point) {
   return {.along = normal, .extent = normal.dot(point)};
 }
 
@@ -37,6 +36,7 @@ class Planes {
       for (const auto v : mesh.triangles[t]) facets_at_[v].push_back(t);
   }
 
+  /// None where the mesh is not convex.
   std::vector<Wall<3>> find() {
     const auto facets = static_cast<std::uint32_t>(mesh_.triangles.size());
     std::vector<Vector<3>> normals(facets);
@@ -48,8 +48,12 @@ class Planes {
     std::vector<double> squared_areas;
     for (const Vector<3>& normal : normals) squared_areas.push_back(normal.squaredNorm());
     std::vector<Wall<3>> walls;
-    for (const auto t : largest_first(squared_areas))
-      if (!covered_[t] && squared_areas[t] > 0) walls.push_back(wall_of(t, normals[t].normalized()));
+    for (const auto t : largest_first(squared_areas)) {
+      if (covered_[t] || !(squared_areas[t] > 0)) continue;
+      const std::optional<Wall<3>> wall = wall_of(t, normals[t].normalized());
+      if (!wall) return {};
+      walls.push_back(*wall);
+    }
     return walls;
   }
 
@@ -75,7 +79,8 @@ class Planes {
         });
   }
 
-  Wall<3> wall_of(std::uint32_t facet, const Vector<3>& normal) {
+  /// None where the facet has the mesh on both sides.
+  std::optional<Wall<3>> wall_of(std::uint32_t facet, const Vector<3>& normal) {
     const Wall<3> best = plane_about(facet, normal);
     double highest = best.extent;
     std::vector<std::uint32_t> near;
@@ -85,12 +90,10 @@ class Planes {
       highest = std::max(highest, height);
     };
     for_each_above(best.along, best.extent - band * tolerance_, note);
-    if (highest - best.extent > outside * tolerance_)
-      throw Error(
-          ErrorCode::bad_scene,
-          fmt::format("\"grow\" packs convex containers, and this one is not: a corner of the mesh lies "
-                      "{:.1g} of its diameter outside of the plane of a facet; \"relax\" packs any",
-                      (highest - best.extent) / bounds_of(Domain(mesh_)).diagonal()));
+    if (highest - best.extent > outside * tolerance_) {
+      for (const auto v : near) height_[v] = below;
+      return {};
+    }
     for (const auto v : mesh_.triangles[facet]) note(v, best.along.dot(mesh_.vertices[v]));
     double innermost = best.extent;
     for (const auto v : near)
@@ -102,7 +105,7 @@ class Planes {
         innermost = std::min(innermost, lowest);
       }
     for (const auto v : near) height_[v] = below;
-    return {.along = best.along, .extent = innermost};
+    return Wall<3>{.along = best.along, .extent = innermost};
   }
 
   /// The plane of the facet, and then the best one through all corners near it as long as these become more.
@@ -135,7 +138,7 @@ class Planes {
     }
     Vector<3> normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
     if (normal.dot(facing) < 0) normal = -normal;
-    return plane(normal, center);
+    return plane<3>(normal, center);
   }
 
   const Mesh& mesh_;
@@ -146,26 +149,30 @@ class Planes {
   std::vector<double> height_;  // over the plane at hand, of corners near it
 };
 
+template <int D>
+std::vector<Wall<D>> walls_of_box(const Box& box) {
+  const Vector<D> lower = bounds_of(box).lower.template head<D>(),
+                  upper = bounds_of(box).upper.template head<D>();
+  std::vector<Wall<D>> walls;
+  for (int k = 0; k < D; ++k) {
+    if (!box.has_wall(k)) continue;
+    walls.push_back(plane<D>(-Vector<D>::Unit(k), lower));
+    walls.push_back(plane<D>(Vector<D>::Unit(k), upper));
+  }
+  return walls;
+}
+
 struct WallsOf {
   double tolerance;
 
-  std::vector<Wall<3>> operator()(const Box& box) const {
-    const Bounds<3> bounds = bounds_of(box);
-    std::vector<Wall<3>> walls;
-    for (int k = 0; k < 3; ++k) {
-      if (!box.has_wall(k)) continue;
-      walls.push_back(plane(-Vector<3>::Unit(k), bounds.lower));
-      walls.push_back(plane(Vector<3>::Unit(k), bounds.upper));
-    }
-    return walls;
-  }
+  std::vector<Wall<3>> operator()(const Box& box) const { return walls_of_box<3>(box); }
   std::vector<Wall<3>> operator()(const Cylinder& cylinder) const {
     const Vector<3> axis = cylinder.axis.stableNormalized();
     std::vector<Wall<3>> walls{
         {.round = true, .along = axis, .center = cylinder.base, .extent = cylinder.radius}};
     if (cylinder.periodic) return walls;
-    walls.push_back(plane(-axis, cylinder.base));
-    walls.push_back(plane(axis, cylinder.base + cylinder.height * axis));
+    walls.push_back(plane<3>(-axis, cylinder.base));
+    walls.push_back(plane<3>(axis, cylinder.base + cylinder.height * axis));
     return walls;
   }
   std::vector<Wall<3>> operator()(const Sphere& sphere) const {
@@ -176,20 +183,21 @@ struct WallsOf {
     for (Wall<3>& wall : walls) wall.extent -= mesh.inset;
     return walls;
   }
-  std::vector<Wall<3>> operator()(const Revolved&) const {
-    throw Error(ErrorCode::bad_scene,
-                "\"grow\" packs convex containers of planes, cylinders and spheres, and no solid of "
-                "revolution; \"relax\" packs any");
-  }
-  std::vector<Wall<3>> operator()(const Polygon&) const {
-    throw Error(ErrorCode::bad_argument, "a polygon lies in the plane and has no walls of three dimensions");
-  }
+  std::vector<Wall<3>> operator()(const Revolved&) const { return {}; }
+  std::vector<Wall<3>> operator()(const Polygon&) const { return {}; }
 };
 
 }  // namespace
 
+template <>
 std::vector<Wall<3>> convex_walls(const Domain& shape, double tolerance) {
   return std::visit(WallsOf{tolerance}, shape);
+}
+
+template <>
+std::vector<Wall<2>> convex_walls(const Domain& shape, double) {
+  const auto* box = std::get_if<Box>(&shape);
+  return box ? walls_of_box<2>(*box) : std::vector<Wall<2>>();
 }
 
 }  // namespace bernal

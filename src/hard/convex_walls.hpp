@@ -7,7 +7,9 @@
 
 namespace bernal {
 
-/// The walls around a convex shape: those of an analytic container, or the planes of a mesh's facets.
+/// The walls around a convex shape: those of an analytic container, or the planes of a mesh's facets. None
+/// where it is not convex: of a mesh with a corner more than 4 tolerances outside of a facet's plane, and of
+/// polygons and solids of revolution, which are not asked.
 ///
 /// Facets with corners in one plane to within `tolerance` become one wall: those of a flat side of many
 /// triangles with rounded corners, and a few neighbours on a finely divided round side. Each wall is at the
@@ -16,9 +18,10 @@ namespace bernal {
 /// most 6 tolerances. Each plane is the best fit to all corners near it, starting from that of its largest
 /// facet, because the normals of thin triangles are unreliable.
 ///
-/// Throws Error{bad_scene} for a mesh that is not convex: with a corner more than 4 tolerances outside of a
-/// facet's plane. Precondition: meshes are closed and oriented outwards. Cost: about 10 µs a wall.
-std::vector<Wall<3>> convex_walls(const Domain& shape, double tolerance);
+/// Precondition: D is the dimension of the shape; meshes are closed and oriented outwards. Cost: about 10 µs
+/// a wall.
+template <int D = 3>
+std::vector<Wall<D>> convex_walls(const Domain& shape, double tolerance);
 
 struct LargestSphere {
   Vector<3> center;

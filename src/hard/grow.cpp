@@ -195,7 +195,7 @@ template <int D>
 Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Reporter& report,
               const Grow& options, const std::function<void(double size, double done)>& on_growth) {
   HardSpheres<D> flight(spheres, arena.edges, report.random(Stream::grow),
-                        {.walls = arena.walls, .masses = options.masses});
+                        {.walls = arena.walls, .facets = arena.facets.get(), .masses = options.masses});
   double rate = growth_rate<D>(spheres, arena.volume, options);
   StageEnd end = StageEnd::converged;
   double next_squeezed = 0, next_filled = 0, locked = 0;
@@ -245,6 +245,8 @@ Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Report
   flight.write_to(spheres);
   return {end, flight.size()};
 }
+template Grown grow_to<2>(double, Spheres<2>&, const Arena<2>&, Reporter&, const Grow&,
+                          const std::function<void(double, double)>&);
 template Grown grow_to<3>(double, Spheres<3>&, const Arena<3>&, Reporter&, const Grow&,
                           const std::function<void(double, double)>&);
 
@@ -261,8 +263,8 @@ const StageEntry& entry_of<Grow>() {
   static const StageEntry entry =
       {.table = stage_table<Grow>(
            {.name = "grow",
-            .help = "hard spheres fly, collide and grow, in convex containers to their radii, in periodic "
-                    "boxes of 2 to 6 dimensions until they jam",
+            .help = "hard spheres fly, collide and grow, in containers to their radii, in periodic boxes of "
+                    "2 to 6 dimensions until they jam",
             .keys =
                 {buys_accuracy(
                      {10, 1, 0.1, 0.01},
@@ -298,6 +300,7 @@ const StageEntry& entry_of<Grow>() {
             .complete = completion(complete_grow)},
            {.in_bed = true,
             .in_box = true,
+            .in_plane = true,
             .box_between_walls = true,
             .least_dimension = 2,
             .most_dimensions = 6,
@@ -309,10 +312,7 @@ const StageEntry& entry_of<Grow>() {
        .act_in_bed = of_options(grow_in_container),
        .act_in_box = of_options(grow),
        .may_bring = {"insertion", "neighbour shells", "collisions", "reflections", "growth", "polish"},
-       .effects = of_options(effects_of_growth),
-       .require = [](const void*, const Domain& container, double smallest_radius, const FillTask&) {
-         walls_for_growth(container, smallest_radius);
-       }};
+       .effects = of_options(effects_of_growth)};
   return entry;
 }
 

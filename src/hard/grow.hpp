@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "bernal/hard/grow.hpp"
@@ -41,9 +42,9 @@ namespace bernal {
 /// dimensions. Cost: about 2,000 collisions a sphere at 0.5 to 0.8 µs. One thread.
 StageEnd grow(const Grow& options, SpheresInBox& in_box, Reporter& report);
 
-/// Growth in a convex container with the drawn sizes: hard spheres fly, collide with each other and the
-/// walls, and grow in proportion until they have their radii (Lubachevsky & Stillinger, J. Stat. Phys. 60,
-/// 561 (1990); at a wall v_n -> -v_n - 2 r').
+/// Growth in a container of two or three dimensions with the drawn sizes: hard spheres fly, collide with each
+/// other and the walls, and grow in proportion until they have their radii (Lubachevsky & Stillinger, J.
+/// Stat. Phys. 60, 561 (1990); at a wall v_n -> -v_n - 2 r').
 ///
 /// The number of spheres is the target's or the expected one. They start at the share of their radii that
 /// fills phi_init of the container: those in the bed at their positions, the others by random sequential
@@ -52,30 +53,29 @@ StageEnd grow(const Grow& options, SpheresInBox& in_box, Reporter& report);
 /// continues to grow, a few times at most. So the result is the start of the drawn sequence. Schedule and
 /// pressure are those of growth in a periodic box, with the cube root of the container's volume as length.
 ///
-/// The walls are those of `convex_walls`: facets in one plane to 1e-4 of the smallest radius count as one.
-/// The result does not rely on this: all spheres enter the bed by the same test as in any other stage. They
-/// end with their radii and the skin of the bed, 1e-9.
+/// The walls of a convex container are those of `convex_walls`: facets in one plane to 1e-4 of the smallest
+/// radius count as one. Those of any other are `FacetedWalls`, of a solid of revolution inside of it by up to
+/// 1e-3 of that radius. The result does not rely on this: all spheres enter the bed by the same test as in
+/// any other stage. They end with their radii and the skin of the bed, 1e-9.
 ///
 /// Ends `converged` with all requested or expected spheres, `full` with those that fitted. Throws
-/// Error{bad_scene} if the container is not convex, if the largest sphere does not fit into it, or if
-/// insertion finds no position at all. Cost: that of growth in a periodic box, about 2,000 collisions a
-/// sphere at 0.5 to 0.8 µs; as much again after each removal. Han's cylinder (R = 1, H = 2, r = 0.0309): 0.60
-/// in 17 s, 0.62 in 24 s, for which relaxation takes 0.8 s and 2.7 s; 0.63 in 41 s, while relaxation ends at
-/// 0.6288 after 59 s. One thread.
+/// Error{bad_scene} if the largest sphere does not fit into the container, or if insertion finds no position
+/// at all. Cost: that of growth in a periodic box, about 2,000 collisions a sphere at 0.5 to 0.8 µs, up to
+/// twice as much between facets; as much again after each removal. Han's cylinder (R = 1, H = 2, r = 0.0309):
+/// 0.60 in 17 s, 0.62 in 24 s, for which relaxation takes 0.8 s and 2.7 s; 0.63 in 41 s, while relaxation
+/// ends at 0.6288 after 59 s. One thread.
 StageEnd grow_in_container(const Grow& options, SpheresInBed& in_bed, Reporter& report);
 
 /// Its effects with their prices.
 std::vector<PlanItem> effects_of_growth(const Grow& options, const Outlook& outlook);
 
-/// The walls that growth uses for the shape. Throws Error{bad_scene} if it is not convex.
-std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radius);
-
-/// The region of growth: a periodic box, or the region between walls in it, with its volume.
+/// The region of growth: a periodic box, or the region between walls or facets in it, with its volume.
 template <int D>
 struct Arena {
   Vector<D> edges;
   std::vector<Wall<D>> walls;
   double volume;
+  std::shared_ptr<const FacetedWalls> facets = {};
 };
 
 struct Grown {

@@ -26,6 +26,9 @@ constexpr double trial = 1.5e-6, questions = 3;
 /// In a container spheres have their radii before they jam: of the collisions until then, room being what is
 /// free of what is attainable, share / (room + least_room).
 constexpr double share_of_room = 0.008, least_room = 0.02;
+/// As many as can be placed jam, lose the last drawn and grow again: 1,900 to 4,000 collisions of 640 to
+/// 1,800 spheres and discs in seven containers, four of which are not convex.
+constexpr double factor_of_filling = 1.5;
 
 double collisions_a_sphere(const Grow& options, const Outlook& outlook) {
   const double length =
@@ -34,6 +37,7 @@ double collisions_a_sphere(const Grow& options, const Outlook& outlook) {
   const double decades = std::log10(options.pressure);
   if (!outlook.in_bed && outlook.placed) return collisions_a_decade * decades;
   double jammed = collisions_until_jammed * std::pow(rate / default_rate, -cost_of_patience) * decades / 6;
+  if (outlook.in_bed && outlook.is_filled) jammed *= factor_of_filling;
   if (outlook.in_bed && !outlook.is_filled) {
     const double room = std::max(0.0, 1 - outlook.aim / outlook.task.attainable);
     jammed *= std::min(1.0, share_of_room / (room + least_room));

@@ -20,8 +20,10 @@ namespace {
 
 /// Of the smallest radius: facets whose corners are that near to one plane count as one.
 constexpr double flatness = 1e-4;
-/// What the walls may be inside of the container, in flatness: see `convex_walls`.
+/// What such walls may be inside of the container, in flatness: see `convex_walls`.
 constexpr double inset = 6;
+/// Of the smallest radius: what round walls that are not convex may be inside of the container, as facets.
+constexpr double roundness = 1e-3;
 /// Spheres start no larger than this share of their radii, clear of such walls wherever they come from.
 constexpr double largest_start = 0.99;
 /// Random places tried for a sphere before the insertion counts as stuck, and the thinnest insertion.
@@ -49,6 +51,19 @@ struct Growing : FirstDrawn {
   void archive(Archive& a) { a(spheres, placed, size, grown); }
 };
 
+template <int D>
+double root(double volume) {
+  return D == 3 ? std::cbrt(volume) : std::pow(volume, 1.0 / D);
+}
+template <int D>
+double power(double size) {
+  double volume = size;
+  for (int k = 1; k < D; ++k) volume *= size;
+  return volume;
+}
+
+/// In a container of D dimensions.
+template <int D>
 class Growth {
  public:
   Growth(SpheresInBed& in_bed, Reporter& report, const Grow& options)
@@ -58,18 +73,24 @@ class Growth {
         random_(report.random(Stream::grow)),
         full_size_(1 + (1 + share_for_rounding) * in_bed.bed().skin() / in_bed.supply->smallest()),
         arena_{{},
-               walls_for_growth(in_bed.task.domain, in_bed.supply->smallest()),
-               in_bed.task.container->volume()} {
+               convex_walls<D>(in_bed.task.domain, flatness * in_bed.supply->smallest()),
+               in_bed.task.container->volume()},
+        inside_(in_bed.supply->smallest() * (!arena_.walls.empty() ? inset * flatness
+                                             : std::holds_alternative<Revolved>(in_bed.task.domain)
+                                                 ? roundness
+                                                 : 0)) {
     const Bounds<3> bounds = in_bed.bed().container().bounds();
     const Boundary<3>& boundary = in_bed.bed().container().boundary();
-    arena_.edges = bounds.size().array() + margin * 2 * in_bed.supply->largest();
-    to_box_ = 0.5 * arena_.edges - bounds.center();
-    for (int k = 0; k < 3; ++k) {
+    arena_.edges = bounds.size().head<D>().array() + margin * 2 * in_bed.supply->largest();
+    to_box_ = 0.5 * arena_.edges - bounds.center().head<D>();
+    for (int k = 0; k < D; ++k) {
       if (!boundary.repeats(k)) continue;
       arena_.edges[k] = boundary.edges[k];
       to_box_[k] = -boundary.origin[k];
     }
-    for (Wall<3>& wall : arena_.walls) wall.shift(to_box_);
+    for (Wall<D>& wall : arena_.walls) wall.shift(to_box_);
+    if (!arena_.walls.empty()) return;
+    arena_.facets = std::make_shared<FacetedWalls>(in_bed.task.domain, inside_, point_in_space<D>(to_box_));
   }
 
   StageEnd run() {
@@ -110,31 +131,33 @@ class Growth {
  private:
   /// With those that the walls leave hardly any room, which are never as large as they have to be in flight.
   void complete(std::size_t wanted) {
-    const double volume = volume_of(in_bed_.drawn(wanted).spheres);
-    SnugPlaces(in_bed_, report_).complete(volume / in_bed_.task.container->volume());
+    SnugPlaces(in_bed_, report_).complete(in_bed_.volume_of_drawn(wanted) / in_bed_.task.container->volume());
   }
 
   /// Of analytic containers that is known beforehand; the walls of a mesh may be a little inside of it.
   bool fits_between_walls() const {
+    if (arena_.facets) return full_size_ * in_bed_.supply->largest() + inside_ <= in_bed_.roomiest().radius;
     if (!std::holds_alternative<Mesh>(in_bed_.task.domain)) return true;
-    const LargestSphere largest = largest_sphere_between(arena_.walls, {Vector<3>::Zero(), arena_.edges});
-    if (in_bed_.supply->largest() <= largest.radius) return true;
+    double room = 0;
+    if constexpr (D == 3)  // of which meshes are
+      room = largest_sphere_between(arena_.walls, {Vector<3>::Zero(), arena_.edges}).radius;
+    if (in_bed_.supply->largest() <= room) return true;
     if (in_bed_.supply->largest() <= (1 + 1e-9) * in_bed_.roomiest().radius) return false;
     throw Error(
         ErrorCode::bad_scene,
         fmt::format(
             "the largest sphere does not fit into the container, which takes one only {:.6g} times as "
             "large: use smaller ones or check the units",
-            largest.radius / in_bed_.supply->largest()));
+            room / in_bed_.supply->largest()));
   }
 
   /// Finds places for all spheres that have none, and the size at which they do.
   void insert(Growing& growing) {
     const EffectTimer timer(report_.effects["insertion"]);
-    const double filled = volume_of(growing.spheres) / arena_.volume;
+    const double filled = in_bed_.volume_of(growing.spheres) / arena_.volume;
     double phi = options_.phi_init.value_or(0.2);
     do {
-      growing.size = std::min(largest_start, std::cbrt(phi / filled));
+      growing.size = std::min(largest_start, root<D>(phi / filled));
       if (try_to_insert(growing)) return;
       phi /= 2;
     } while (phi > least_phi_init);
@@ -146,12 +169,11 @@ class Growth {
 
   bool try_to_insert(Growing& growing) {
     const Container& container = in_bed_.bed().container();
-    const double clear_of_walls = inset * flatness * in_bed_.supply->smallest();
     const bool all = insert_at_random<3>(
         growing.spheres, growing.placed, growing.size, container.bounds(), container.boundary(),
         most_trials_between_walls, [&](double) { return in_bed_.bed().places().draw(random_); },
         [&](const Vector<3>& c, double r) {
-          return container.clearance_within(c, r + clear_of_walls) >= r + clear_of_walls;
+          return container.clearance_within(c, r + inside_) >= r + inside_;
         },
         report_.monitor);
     if (all) growing.placed.assign(growing.spheres.size(), true);
@@ -161,21 +183,22 @@ class Growth {
   /// Lets them fly and grow until they have their radii, or jam. Returns whether they have.
   bool grow(Growing& growing) {
     const EffectTimer timer(report_.effects["growth"]);
-    Spheres<3> flying = growing.spheres;
-    const Boundary<3> box{arena_.edges};
+    Spheres<D> flying = along_axes<D>(growing.spheres);
+    const Boundary<D> box{arena_.edges};
     for (std::size_t i = 0; i < flying.size(); ++i) {
       flying.r[i] *= growing.size;
-      flying.set_center(i, box.wrap(flying.center(i) + to_box_));
+      flying.set_center(i, box.wrap(Vector<D>(flying.center(i) + to_box_)));
     }
     if (flying.empty()) return growing.grown = true;
     const double largest = full_size_ / growing.size;
     const auto [end, size] =
-        grow_to<3>(largest, flying, arena_, report_, options_, [&](double size_now, double done) {
-          const double volume = std::pow(size_now, 3) * volume_of(flying);
+        grow_to<D>(largest, flying, arena_, report_, options_, [&](double size_now, double done) {
+          const double volume = power<D>(size_now) * volume_of(flying);
           report_.milestone("grow", flying.size(), volume / in_bed_.task.container->volume(), 0, done);
         });
     cancelled_ = end == StageEnd::cancelled;
-    for (std::size_t i = 0; i < flying.size(); ++i) growing.spheres.set_center(i, flying.center(i) - to_box_);
+    for (std::size_t i = 0; i < flying.size(); ++i) flying.set_center(i, flying.center(i) - to_box_);
+    std::ranges::copy(flying.x, growing.spheres.x.begin());
     growing.size *= size;
     return growing.grown = size == largest;
   }
@@ -185,7 +208,7 @@ class Growth {
   void trim_and_grow(Growing& growing) {
     if (trims_ > 0) grow(growing);  // as it was at
     while (trims_ < most_trims && !growing.grown && !cancelled_) {
-      const double size = growing.size, volume = size * size * size * volume_of(growing.spheres);
+      const double volume = power<D>(growing.size) * in_bed_.volume_of(growing.spheres);
       const double spare = std::ldexp(caution, trims_++);
       const std::size_t fitting = in_bed_.supply->count_filling((1 - spare) * volume);
       growing.spheres.resize(std::min(fitting, growing.spheres.size()) - 1);
@@ -200,17 +223,14 @@ class Growth {
   const Grow options_;
   Random random_;
   const double full_size_;  // at which spheres have their radii and the skin
-  Arena<3> arena_;
-  Vector<3> to_box_;
+  Arena<D> arena_;
+  const double inside_;  // of the container that the walls may be, at most
+  Vector<D> to_box_;
   int trims_ = 0;  // of those that grow
   bool cancelled_ = false;
 };
 
 }  // namespace
-
-std::vector<Wall<3>> walls_for_growth(const Domain& shape, double smallest_radius) {
-  return convex_walls(shape, flatness * smallest_radius);
-}
 
 StageEnd grow_in_container(const Grow& options, SpheresInBed& in_bed, Reporter& report) {
   StageEnd end = StageEnd::converged;
@@ -219,7 +239,8 @@ StageEnd grow_in_container(const Grow& options, SpheresInBed& in_bed, Reporter& 
   const auto grown = [&] {
     // What fits only touching the walls is never as large as it has to be in flight.
     if (SnugPlaces(in_bed, report).only_some_touch()) return insert_largest_first(in_bed, report);
-    const StageEnd growth = Growth(in_bed, report, options).run();
+    const StageEnd growth = in_bed.bed().dimension() == 2 ? Growth<2>(in_bed, report, options).run()
+                                                          : Growth<3>(in_bed, report, options).run();
     return in_bed.task.target.is_open() ? growth : insert_what_else_fits(in_bed, report, growth);
   };
   if (!is_grown) end = grown();

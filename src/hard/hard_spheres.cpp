@@ -54,7 +54,7 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
       original_(spheres.size()),
       edges_(edges),
       kernel_(options.kernel ? *options.kernel : collision_kernels<D>().front()),
-      walls_(std::move(options.walls), edges) {
+      walls_(std::move(options.walls), edges, options.facets) {
   const std::size_t n = spheres.size();
   if (options.masses == Masses::by_volume) {
     density_ = 1;
@@ -337,11 +337,11 @@ void HardSpheres<D>::predict(Id i) {
   scan_.now = now_;
   const double leaves = time_to_leave(i);
   const FlyingSphere<D>& me = spheres_[i];
-  const double touches = walls_.empty()
-                             ? infinite
-                             : walls_.time_to_touch(i, me.position(now_), me.velocity(),
-                                                    me.r * (size_ + growth_ * now_), me.r * growth_);
-  const double limit = std::min(std::min(leaves, horizon_ - now_), touches);
+  const double end = std::min(leaves, horizon_ - now_), r = me.r * (size_ + growth_ * now_);
+  const double touches =
+      walls_.empty() ? infinite
+                     : walls_.time_to_touch(i, me.position(now_), me.velocity(), r, me.r * growth_, end);
+  const double limit = std::min(end, touches);
   for (FirstCollision first = kernel_.scan(scan_); first.delay < limit;) {
     const Id j = neighbors[first.neighbor];
     const double time = now_ + first.delay;

@@ -51,6 +51,8 @@ struct HardSphereOptions {
   /// No sphere leaves the region between them. Precondition: along an axis that they close, the region plus a
   /// largest diameter, at the final size, is no longer than the edge.
   std::vector<Wall<D>> walls = {};
+  /// In their place in a container that is not convex; they outlive the spheres.
+  const FacetedWalls* facets = nullptr;
   Masses masses = Masses::equal;
   const CollisionKernel<D>* kernel = nullptr;  ///< the fastest if absent
 };

@@ -21,10 +21,11 @@ constexpr double slack = 1.001;
 template <int D>
 void Walls<D>::start(std::size_t count, double most) {
   if (!made_) made_.emplace("reflections");
+  next_.assign(count, 0);
+  if (facets_) return views_.resize(count);
   near_.start(count, 0);
   lists_.resize(count);
   for (NeighborPool::List& list : lists_) list = near_.make();
-  next_.assign(count, 0);
   if (most <= reach_) return;
   reach_ = spare_reach * most;
   levels_ = walls_.size() > few_walls ? divisions : 0;
@@ -65,6 +66,10 @@ void Walls<D>::fill_cells(const Vector<D>& lower, const Vector<D>& size, int lev
 
 template <int D>
 void Walls<D>::settle(Id i, const Vector<D>& home, double reach) {
+  if (facets_) {
+    views_[i].home = home;
+    return facets_->find_near(point_in_space<D>(home), reach, views_[i].near);
+  }
   found_.clear();
   for (const Id w : cells_[place_on_curve<D>(home, edges_) >> (63 / D - levels_) * D])
     if (walls_[w].clearance(home) < reach) found_.push_back(w);
@@ -72,7 +77,9 @@ void Walls<D>::settle(Id i, const Vector<D>& home, double reach) {
 }
 
 template <int D>
-double Walls<D>::time_to_touch(Id i, const Vector<D>& p, const Vector<D>& v, double radius, double growth) {
+double Walls<D>::time_to_touch(Id i, const Vector<D>& p, const Vector<D>& v, double radius, double growth,
+                               double limit) {
+  if (facets_) return time_to_touch_facet(i, p, v, radius, growth, limit);
   double first = std::numeric_limits<double>::infinity();
   for (const Id w : near_.of(lists_[i])) {
     const double time = walls_[w].time_to_touch(p, v, radius, growth);
@@ -85,8 +92,38 @@ double Walls<D>::time_to_touch(Id i, const Vector<D>& p, const Vector<D>& v, dou
 }
 
 template <int D>
+double Walls<D>::time_to_touch_facet(Id i, const Vector<D>& p, const Vector<D>& v, double radius,
+                                     double growth, double limit) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  const View& view = views_[i];
+  if (view.near.empty()) return never;
+  const Vector<3> at = point_in_space<D>(p), velocity = point_in_space<D>(v);
+  const Vector<3> way = point_in_space<D>(p - view.home);
+  const double moved = way.norm(), fastest = velocity.norm() + growth;
+  double first = limit;
+  for (const auto& [normal, clearance, facet] : view.near) {
+    if (clearance - moved - radius >= fastest * first) break;  // nor do those after it come before
+    // A convex facet lies behind the plane through its point nearest to the home.
+    const double gap = clearance + normal.dot(way) - radius;
+    if (gap > 0 && gap >= (growth - normal.dot(velocity)) * first) continue;
+    const double time = facets_->time_to_touch(facet, at, velocity, radius, growth, first);
+    if (!(time < first)) continue;
+    first = time;
+    next_[i] = facet;
+  }
+  return first < limit ? first : never;
+}
+
+template <int D>
+Vector<D> Walls<D>::outward(Id i, const Vector<D>& p) const {
+  if constexpr (D == 2 || D == 3)
+    if (facets_) return facets_->outward(next_[i], point_in_space<D>(p)).template head<D>();
+  return walls_[next_[i]].outward(p);
+}
+
+template <int D>
 double Walls<D>::reflect(Id i, const Vector<D>& p, Vector<D>& v, double growth, double least) const {
-  const Vector<D> n = walls_[next_[i]].outward(p);
+  const Vector<D> n = outward(i, p);
   const double kick = std::max(least, 2 * (n.dot(v) + growth));
   v -= kick * n;
   return kick;

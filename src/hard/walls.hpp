@@ -9,6 +9,7 @@
 
 #include "core/archive.hpp"
 #include "core/made.hpp"
+#include "hard/faceted_walls.hpp"
 #include "hard/flying_sphere.hpp"
 #include "hard/neighbor_pool.hpp"
 
@@ -63,44 +64,61 @@ struct Wall {
   }
 };
 
-/// The walls of a convex region around flying spheres. As `Shells` does for neighbours, it stores for each
-/// sphere the walls that it could meet before it leaves its shell.
+/// The walls around flying spheres: those of a convex region, or the facets of any container. As `Shells`
+/// does for neighbours, it stores for each sphere the walls that it could meet before it leaves its shell.
 ///
-/// Invariant: these are exactly the walls nearer to its home than its reach. The walls near each cell of a
-/// coarse grid are computed once, so that in a container of thousands of planes a sphere costs no more than
-/// the planes around it. Cost: 4 ns a near wall; a sphere far from all walls reads one empty list. Memory:
-/// about 80 bytes a sphere.
+/// Invariant: these are exactly the walls nearer to its home than its reach. Those of a convex region that
+/// are near each cell of a coarse grid are computed once, so that in a container of thousands of planes a
+/// sphere costs no more than the planes around it. Cost: 4 ns a near wall; of facets 30 ns for each that may
+/// come first, and a search each time that a sphere settles; a sphere far from all walls reads one empty
+/// list. Memory: about 80 bytes a sphere, and 40 a near facet.
 template <int D>
 class Walls {
  public:
   using Id = std::uint32_t;
 
-  /// For a region within [0, edge).
-  Walls(std::vector<Wall<D>> walls, const Vector<D>& edges) : walls_(std::move(walls)), edges_(edges) {}
+  /// For a region within [0, edge), between convex walls or in facets, which need two or three dimensions.
+  Walls(std::vector<Wall<D>> walls, const Vector<D>& edges, const FacetedWalls* facets = nullptr)
+      : walls_(std::move(walls)), facets_(facets), edges_(edges) {}
 
-  bool empty() const { return walls_.empty(); }
+  bool empty() const { return walls_.empty() && !facets_; }
 
   /// Prepares for `count` spheres that will `settle`, with reaches up to `most`.
   void start(std::size_t count, double most);
   void settle(Id i, const Vector<D>& home, double reach);
 
   /// The time until sphere i, at p with velocity v, with this radius and growth, touches the first of its
-  /// near walls, which is stored; infinite if there is none.
-  double time_to_touch(Id i, const Vector<D>& p, const Vector<D>& v, double radius, double growth);
+  /// near walls, which is stored; infinite if there is none. It may be infinite where it is `limit` or later.
+  double time_to_touch(Id i, const Vector<D>& p, const Vector<D>& v, double radius, double growth,
+                       double limit = std::numeric_limits<double>::infinity());
   /// Reflects sphere i, at p, from the wall that time_to_touch stored, elastically relative to its growing
   /// surface: v_n -> -v_n - 2 r', with v_n its velocity out of the region. Returns the momentum received by
   /// the wall, at least `least`, for mass 1.
   double reflect(Id i, const Vector<D>& p, Vector<D>& v, double growth, double least) const;
 
   /// The data of the spheres, for the same walls.
-  void archive(Archive& a) { a(reach_, levels_, cells_, near_, lists_, next_); }
+  void archive(Archive& a) {
+    a(reach_, levels_, cells_, near_, lists_, next_);
+    if (facets_) a(views_);
+  }
 
  private:
+  /// The facets near a sphere, nearest first.
+  struct View {
+    Vector<D> home = Vector<D>::Zero();
+    std::vector<FacetedWalls::Near> near = {};
+    void archive(Archive& a) { a(home, near); }
+  };
+
+  double time_to_touch_facet(Id i, const Vector<D>& p, const Vector<D>& v, double radius, double growth,
+                             double limit);
+  Vector<D> outward(Id i, const Vector<D>& p) const;
   void fill_cells(const Vector<D>& lower, const Vector<D>& size, int level, std::size_t first,
                   const std::vector<Id>& near);
 
   std::optional<Made> made_;  // if there are walls
   std::vector<Wall<D>> walls_;
+  const FacetedWalls* facets_;  // or null
   Vector<D> edges_;
   double reach_ = -1;                   // for which the cells are valid
   int levels_ = 0;                      // of cells: 2^levels_ along each edge
@@ -108,7 +126,8 @@ class Walls {
   NeighborPool near_;
   std::vector<NeighborPool::List> lists_;  // in near_, for each sphere
   std::vector<Id> found_;
-  std::vector<Id> next_;  // the wall that each sphere meets
+  std::vector<View> views_;  // of facets, for each sphere
+  std::vector<Id> next_;     // the wall that each sphere meets
 };
 
 }  // namespace bernal

@@ -149,13 +149,11 @@ TEST(Discs, WhatCannotBeDoneIsRefusedInOneLine) {
   const auto said = [&](const std::string& container, const std::string& rest) {
     return testing::error_of(scene_in(container, "count = 9\nradius = 0.2\n" + rest));
   };
-  for (const std::string stage : {"grow", "fly"}) {
-    const std::string what = said(box, "[[stage]]\ndo = \"" + stage + "\"");
-    EXPECT_NE(what.find("cannot work in a container of two dimensions; there, the stages are \"insert\", "
-                        "\"compress\", \"shake\", \"refill\""),
-              std::string::npos)
-        << what;
-  }
+  const std::string flown = said(box, "[[stage]]\ndo = \"fly\"");
+  EXPECT_NE(flown.find("cannot work in a container of two dimensions; there, the stages are \"insert\", "
+                       "\"compress\", \"shake\", \"refill\""),
+            std::string::npos)
+      << flown;
   EXPECT_NE(said(box, "[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"compress\"\ndirection = [0, 0, -1]")
                 .find("a component for each of 2 dimensions, but it has 3"),
             std::string::npos);

@@ -1,6 +1,6 @@
-// Discs that push each other apart in containers of two dimensions: as dense as random close packing less
-// what walls take, certified, and where that is asked for polished until as many contacts as just hold them
-// are closed.
+// Discs that push each other apart, or fly and grow, in containers of two dimensions: as dense as random
+// close packing less what walls take, certified, and where that is asked for polished until as many contacts
+// as just hold them are closed.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -132,6 +132,29 @@ TEST(RelaxedDiscs, FreeAStartOfItsOverlap) {
     EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
     ASSERT_EQ(packing.spheres.size(), 4u);
     EXPECT_EQ(packing.spheres.r, (std::vector<double>{1, 1, 1, 0.5}));
+  }
+}
+
+const std::string grow = "\n[[stage]]\ndo = \"grow\"\n";
+
+TEST(GrownDiscs, ReachWhatIsAskedFor) {
+  for (const Container2& in : test::containers()) {
+    SCOPED_TRACE(in.name);
+    const Packing packing = packed(scene_in(in.toml, "packing_fraction = 0.78\n" + two_sizes + grow));
+    expect_sound(packing, in.domain);
+    EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
+    EXPECT_GE(packing.packing_fraction(), 0.78 * (1 - 1e-12));
+  }
+}
+
+TEST(GrownDiscs, JamAsDenselyAsRelaxedOnes) {
+  for (const Container2& in : test::containers()) {
+    SCOPED_TRACE(in.name);
+    const std::string filled = "fill = true\n" + two_sizes;
+    const Packing grown = packed(scene_in(in.toml, filled + grow + "rate = 0.03\npressure = 1e4\n"));
+    expect_sound(grown, in.domain);
+    const Packing relaxed = packed(scene_in(in.toml, filled + relax));
+    EXPECT_NEAR(grown.packing_fraction(), relaxed.packing_fraction(), 0.015);
   }
 }
 

@@ -129,12 +129,6 @@ TEST(Shapes, WhatTheyAreNotIsSaidInOneLine) {
   EXPECT_NE(error_with(cone, "[engine]\nkind = \"lammps\"\n[[stage]]\ndo = \"relax\"\n")
                 .find("engines have no walls of a solid of revolution"),
             std::string::npos);
-  try {
-    testing::run_with(build(parse_scene(scene_with(cone, "[[stage]]\ndo = \"grow\"\n"), "s.toml")));
-    ADD_FAILURE() << "grow packed a cone";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("\"relax\" packs any"), std::string::npos) << error.what();
-  }
 }
 
 // What pictures, measures and formats take for the solid: closed, outwards, near it, and of its volume.

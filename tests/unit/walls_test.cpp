@@ -275,12 +275,12 @@ TEST(ConvexWalls, TakeAFanOfNeedlesRoundedByAFile) {
   expect_sound(ball, convex_walls(ball, 1e-6), 1e-6);
 }
 
-TEST(ConvexWalls, RefuseWhatIsNotConvex) {
+TEST(ConvexWalls, AreNoneOfWhatIsNotConvex) {
   for (const Mesh& mesh :
        {test::l_shape_mesh(), test::torus_mesh(1, 0.4, 12, 6),
         test::joined(test::icosphere_mesh(1, 1), test::inverted(test::icosphere_mesh(0.5, 0))),
         test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), test::box_mesh({2, 0, 0}, {1, 1, 1}))})
-    EXPECT_THROW(convex_walls(mesh, 1e-4), Error);
+    EXPECT_TRUE(convex_walls(mesh, 1e-4).empty());
 }
 
 /// Thousands of planes: the grid finds the same near ones as a look at all of them.
