@@ -161,7 +161,8 @@ class Run {
     task = {.target = scene_.target,
             .allowed_overlap = scene_.overlap,
             .attainable = plan_.attainable_packing_fraction,
-            .close_packing = scene_.target.bed.density ? random_close_packing_of(plan_) : 0};
+            .close_packing = scene_.target.bed.density ? random_close_packing_of(plan_) : 0,
+            .fill_task = fill_task_of(plan_)};
     const int dimension = dimension_of(plan_.domain);
     const Vector<dynamic> edges = bounds_of<dynamic>(plan_.domain).size();
     Supply::Source source{*stated_.radii, dimension, packing_.seed, *scene_.draw};
@@ -231,7 +232,6 @@ class Run {
     }
     if (any_in_bed_) task.container = counted(make_container(task.domain, scene_.walls, frame_.resolution));
     if (any_in_bed_ || !plan_.box_follows) task.target_edges = edges;
-    task.fill_task = fill_task_of(plan_);
   }
 
   /// An empty bed, or all spheres of the sequence in a box of these proportions, without places. Where the

@@ -38,7 +38,7 @@ void ContainerGround::place(const Spheres<3>& spheres) {
   if (packing_) {
     lists_built_ += packing_->lists_built();
   }
-  packing_ = std::make_unique<SoftPacking>(spheres, *container_, soft_kernels().front());
+  packing_ = std::make_unique<SoftPacking>(spheres, *container_, soft_kernels().front(), by_octaves_);
   if (margin_ == 0) {
     const double resolution = packing_->resolution() / std::ranges::min(spheres.r);
     require_resolution(resolution);

@@ -33,9 +33,11 @@ class ContainerGround {
   int axes() const { return container_->dimension(); }
 
   /// Both outlive this. `snug` says that no sphere has more room between the walls than it takes. Then walls
-  /// push a little less than spheres do, so that spheres come free of overlap.
-  ContainerGround(const Container& container, const Places& places, bool snug = false)
-      : container_(&container), places_(&places), snug_(snug) {}
+  /// push a little less than spheres do, so that spheres come free of overlap. `by_octaves` as of
+  /// `SoftLists`.
+  ContainerGround(const Container& container, const Places& places, bool snug = false,
+                  bool by_octaves = false)
+      : container_(&container), places_(&places), snug_(snug), by_octaves_(by_octaves) {}
 
   /// Puts the spheres, whose centres are inside the container, into the engine. Throws what
   /// `require_resolution` does.
@@ -63,7 +65,7 @@ class ContainerGround {
  private:
   const Container* container_;
   const Places* places_;
-  bool snug_;
+  bool snug_, by_octaves_;
   std::unique_ptr<SoftPacking> packing_;
   double margin_ = 0;
   Effect lists_built_;

@@ -23,7 +23,7 @@ constexpr double leeway = 0.02;
 /// Appends the contacts nearer than `reach` among the pieces of a sphere. Returns a lower bound of the
 /// distance from all walls.
 double SoftWalls::look_through(const NearSphere& near, double reach, std::vector<WallContact>& contacts) {
-  double free = near.beyond - near.way;
+  double free = beyond(near, near.last);
   for (std::uint32_t first = 0; first < near.count; first += run) {
     float& least = least_until_[near.first_run + first / run];
     if (least - near.way >= reach) {
@@ -214,7 +214,7 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
       continue;
     }
     const double gone = near.way + way(near.last, c).norm();
-    double share = std::min(1.0, (1 - kept) * std::max(0.0, near.beyond - gone) / length);
+    double share = std::min(1.0, (1 - kept) * std::max(0.0, beyond(near, c)) / length);
     for (std::uint32_t k = 0; k < near.count && share > 0; ++k) {
       if (k % run == 0 && (1 - kept) * (least_until_[near.first_run + k / run] - gone) > length) {
         k += run - 1;

@@ -137,8 +137,7 @@ bool hardly_overlaps(const Spheres<D>& spheres, const Vector<D>& edges, const Sp
 ///    grows by the least value that the largest overlap ratio has had. Up to 10^7 spheres the packing
 ///    fraction stays within 0.002 of that of 10,000.
 ///  - It ends with overlaps far below `options.stop`.
-/// In four dimensions and more, and between walls, `NeighborRelaxation` sweeps one sphere after the other, on
-/// lists for one size.
+/// In four dimensions and more `NeighborRelaxation` sweeps one sphere after the other, on lists for one size.
 ///
 /// `overlap` is the largest overlap ratio at the start; 1 where it is not known. Preconditions and results
 /// are those of `relax_by_the_book`. Cost: about 13 ns a sphere and sweep, lists included; 0.07 µs in four

@@ -17,10 +17,10 @@ namespace {
 
 constexpr double microsecond = 1e-6;
 
-/// A sphere and sweep against that of three dimensions, by dimension; and between walls, where spheres are
-/// swept one after the other, as they are from four dimensions on; and in tilted boxes.
+/// A sphere and sweep against that of three dimensions, by dimension; from four on one after the other, as in
+/// tilted boxes.
 constexpr double by_dimension[] = {12, 0.55, 1, 5.5, 13, 17, 22, 28};
-constexpr double one_by_one = 3.5, in_tilted_box = 6;
+constexpr double in_tilted_box = 6;
 /// Sizes that differ make longer lists: the power of their spread that a sphere costs more.
 constexpr double cost_of_spread = 1, cost_of_spread_in_bed = 1.5;
 /// The same in boxes where they are wide: of what equal spheres take, and the power of their spread.
@@ -72,11 +72,8 @@ constexpr double bytes_in_blocks = 85, bytes_of_lists_in_blocks = 75;
 
 double dimension_factor(const Outlook& outlook) {
   const int dimension = outlook.task.dimension;
-  const bool sorted = (dimension != 2 && dimension != 3) || !outlook.task.has_walls;
   return by_dimension[static_cast<std::size_t>(dimension - 1)] *
-         (outlook.task.is_tilted ? in_tilted_box
-          : sorted               ? 1
-                                 : one_by_one) *
+         (outlook.task.is_tilted ? in_tilted_box : 1) *
          std::pow(std::max(1.0, outlook.spheres / many), cost_of_many);
 }
 
@@ -134,8 +131,7 @@ void require_gpu_suits(const Relax& options, const Outlook& outlook) {
 }  // namespace
 
 std::vector<PlanItem> effects_of_pushing(double seconds, const Outlook& outlook, std::string what) {
-  const bool in_blocks =
-      !outlook.task.has_walls && outlook.task.dimension <= 3 && outlook.spheres >= SoftBlocks::fewest_spheres;
+  const bool in_blocks = outlook.task.dimension <= 3 && outlook.spheres >= SoftBlocks::fewest_spheres;
   return {neighbor_lists(share_of_lists * seconds,
                          (in_blocks ? bytes_of_lists_in_blocks : bytes_of_lists) * outlook.spheres),
           {.name = "relaxation",

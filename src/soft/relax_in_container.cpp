@@ -14,6 +14,7 @@
 #include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "soft/crowd.hpp"
+#include "soft/shrink_in_container.hpp"
 #include "work/clear_place.hpp"
 #include "work/snug_places.hpp"
 
@@ -29,6 +30,8 @@ constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
 constexpr int most_hand_overs = 20;
+/// Fewer spheres of sizes that are not wide are stirred as densely in less time than they shrink.
+constexpr std::size_t worth_shrinking = 1000;
 /// After sizes are exchanged: as `taken_out`, and exchanges each time.
 constexpr double taken_out_dealing = 0.3;
 constexpr int exchanges_to_settle = 50;
@@ -39,7 +42,7 @@ constexpr std::size_t places_a_task = 1024;
 
 class Relaxation {
  public:
-  Relaxation(SpheresInBed& in_bed, Reporter& report, const Relax& options)
+  Relaxation(SpheresInBed& in_bed, Reporter& report, const Relax& options, bool pours)
       : in_bed_(in_bed),
         report_(report),
         options_(options),
@@ -50,25 +53,33 @@ class Relaxation {
                                      true)
                   : 1),
         snug_(SnugPlaces(in_bed, report).all_touch()),
-        crowd_(ContainerGround(in_bed.bed().container(), in_bed.bed().places(), snug_),
+        wide_(!pours && in_bed.bed().dimension() == 3 && is_for_wide_sizes(in_bed.task.fill_task, options)),
+        crowd_(ContainerGround(in_bed.bed().container(), in_bed.bed().places(), snug_, wide_),
                spheres_to_start_from()),
-        target_count_(std::max(crowd_.size(), in_bed.target_count())) {}
+        target_count_(std::max(crowd_.size(), in_bed.target_count())),
+        shrinks_(!pours && !snug_ && in_bed.bed().dimension() == 3 && in_bed.begun == 0 &&
+                 in_bed.crowded_start.empty() &&
+                 (wide_ || (in_bed.task.target.fill && crowd_.size() >= worth_shrinking))) {}
 
   StageEnd run() {
-    enum class Step { free, exchange, push_in } step = Step::free;
+    enum class Step { shrink, free, exchange, push_in } step = Step::shrink;
     bool free = false, limited = false;
     const Resumable part(report_, "relaxation", [&](Archive& a) {
       a(step, free, limited, share_out_, patience_, random_, over_, sweeps_of_exchange_);
     });
+    if (step == Step::shrink) {
+      free = shrinks_ && pack_shrinking();
+      step = Step::free;
+    }
     if (step == Step::free) {
-      free = free_by_dropping();
+      free = free || free_by_dropping();
       limited = over_;  // what is added after that is as much as there is time for
       const bool exchanges_sizes = free && !over_ && gain_ > 1 && crowd_.size() < target_count_;
       step = exchanges_sizes ? Step::exchange : Step::push_in;
     }
     if (step == Step::exchange) exchange();
     step = Step::push_in;
-    if (free && !over_) push_in();
+    if (free && !over_ && !(shrinks_ && gain_ == 1)) push_in();
     // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
     bool all_there = put_in_bed();
     for (int k = 0; !all_there && free && !cancelled_ && k < most_hand_overs; ++k) {
@@ -105,6 +116,18 @@ class Relaxation {
     });
     for (double& r : spheres.r) r += skin_;
     return spheres;
+  }
+
+  /// Returns whether as many as fit are free of overlap.
+  bool pack_shrinking() {
+    const auto tell = [this](const Spheres<3>& spheres, double largest, double done) {
+      report_.milestone("relax", spheres.size(), packing_fraction_of(spheres), largest, done);
+    };
+    FirstThatFit packed = bernal::pack_shrinking(in_bed_, crowd_.size(), target_count_, skin_, random_,
+                                                 report_, options_, tell);
+    cancelled_ = over_ = packed.end == StageEnd::cancelled;
+    crowd_.restore(std::move(packed.spheres));
+    return packed.is_free && !cancelled_;
   }
 
   bool put_in_bed() {
@@ -253,9 +276,11 @@ class Relaxation {
 
   void tell() { tell("relax", crowd_.done()); }
   void tell(std::string_view stage, double done) {
-    report_.milestone(stage, crowd_.size(),
-                      in_bed_.volume_of(crowd_.spheres()) / in_bed_.task.container->volume(),
-                      crowd_.largest_overlap(), done);
+    report_.milestone(stage, crowd_.size(), packing_fraction_of(crowd_.spheres()), crowd_.largest_overlap(),
+                      done);
+  }
+  double packing_fraction_of(const Spheres<3>& spheres) const {
+    return in_bed_.volume_of(spheres) / in_bed_.task.container->volume();
   }
 
   double seconds() const {
@@ -271,8 +296,10 @@ class Relaxation {
   const double skin_;  // that the radii are relaxed with, where it is not thin: far from the origin
   const double gain_;  // by exchange: 1 where there is none
   const bool snug_;    // between the walls
+  const bool wide_;    // sizes
   CrowdInContainer crowd_;
   const std::size_t target_count_;
+  const bool shrinks_;  // to begin with, see `pack_shrinking`
   double sweeps_of_exchange_ = 0;
   double share_out_ = taken_out, patience_ = options_.patience;  // of the next that are taken out
   bool over_ = false;  // there is no more time, or no more patience of the user
@@ -286,8 +313,7 @@ bool is_dilute(const SpheresInBed& in_bed) {
                                        dilute * task.attainable * task.container->volume();
 }
 
-StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report,
-                              bool may_be_lattice) {
+StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report, bool pours) {
   enum class Step { begin, insert, relax, finish } step = Step::begin;
   StageEnd end = StageEnd::converged;
   const Resumable part(report, "relax in container", [&](Archive& a) { a(step, end); });
@@ -306,9 +332,9 @@ StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Report
     }
     const auto relax = [&] {
       const EffectTimer timer(report.effects["relaxation"]);
-      return Relaxation(in_bed, report, options).run();
+      return Relaxation(in_bed, report, options, pours).run();
     };
-    return place_few(insert_what_else_fits(in_bed, report, relax()), in_bed, report, may_be_lattice);
+    return place_few(insert_what_else_fits(in_bed, report, relax()), in_bed, report, !pours);
   };
   if (step != Step::finish) end = relaxed();
   step = Step::finish;
@@ -318,11 +344,11 @@ StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Report
 }  // namespace
 
 StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report) {
-  return relaxed_in_container(options, in_bed, report, true);
+  return relaxed_in_container(options, in_bed, report, false);
 }
 
 StageEnd relax_to_pour(const Relax& options, SpheresInBed& in_bed, Reporter& report) {
-  return relaxed_in_container(options, in_bed, report, false);
+  return relaxed_in_container(options, in_bed, report, true);
 }
 
 }  // namespace bernal

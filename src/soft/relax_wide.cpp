@@ -2,228 +2,77 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
-#include <utility>
+#include <vector>
 
-#include "core/order.hpp"
-#include "near/cell_grid.hpp"
-#include "soft/growing_box.hpp"
-#include "soft/relax.hpp"
-#include "soft/soft_packing.hpp"
+#include "soft/from_largest.hpp"
 #include "work/free_of_overlap.hpp"
-#include "work/holes.hpp"
 #include "work/random_insertion.hpp"
 
 namespace bernal {
 namespace {
 
-// A kind is the spheres of one octave of radii.
-
-/// A last kind with at most this share of the spheres joins the kind before it.
-constexpr double least_of_kind = 0.02;
-/// The number of random places that are tried for a sphere.
-constexpr int trials_a_sphere = 30;
-/// The monitor is asked once for so many spheres.
-constexpr std::size_t spheres_a_question = 4096;
-/// The most cycles of sweeps after each kind. They go on as long as the mean overlap falls below the share
-/// `helps` of its last value.
-constexpr int most_cycles_of_kind = 20;
-constexpr double helps = 0.97;
-/// Largest overlap ratio at which a kind counts as settled.
-constexpr double settled = 3e-3;
-/// If the largest kind has few spheres, they are packed several times, about `spheres_in_starts` spheres in
-/// all, and the densest packing is kept: packing fractions of few spheres differ by 0.02.
-constexpr std::size_t spheres_in_starts = 1000, most_starts_of_few = 20;
-/// Packing fraction at the start of each.
-constexpr double start_of_few = 0.75;
-/// Fewer spheres have as many sweeps as this number: they cost nothing.
-constexpr std::size_t sweeps_grow_from = 1000;
-/// The usual number of cycles of a kind, and of a packing of few spheres.
-constexpr double usual_cycles_of_kind = 4, usual_cycles_of_few = 60;
-/// The usual mean overlap when growths begin to be predicted.
-constexpr double last_mean = 5e-4;
-/// After this number of cycles only the largest overlap ratio counts; before, its share grows with this
-/// power.
-constexpr double cycles_of_means = 200, power_of_cycles = 4;
-
-int sweeps_of_wide(const Relax& options, std::size_t spheres) {
-  const int sweeps = sweeps_a_cycle(options, std::clamp(spheres, sweeps_grow_from, enough_for_sweeps));
-  return std::max(1, static_cast<int>(std::lround(share_of_cycle * sweeps)));
-}
-
-/// The mean over the spheres, or over their volume if that is larger, of the root of `squeeze`, the sum of
-/// squared overlap ratios.
+/// A box of given edges, as `place_kinds` knows one.
 template <int D>
-double mean_overlap(const std::vector<float>& squeeze, const std::vector<double>& radii) {
-  double sum = 0, weighted = 0, volume = 0;
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    const double overlap = std::sqrt(squeeze[i]), weight = std::pow(radii[i], D);
-    sum += overlap;
-    weighted += weight * overlap;
-    volume += weight;
-  }
-  return std::max(sum / static_cast<double>(radii.size()), weighted / volume);
-}
-
-/// Puts the spheres from `first` on between those before them.
-template <int D>
-void place_between(Spheres<D>& spheres, std::size_t first, const Vector<D>& edges, Random& random,
-                   const Monitor& monitor) {
-  const Boundary<D> boundary{edges};
-  const Bounds<D> box{Vector<D>::Zero(), edges};
-  if (first == 0) {
-    for (std::size_t i = 0; i < spheres.size(); ++i) spheres.set_center(i, uniform_point(random, box));
-    return;
-  }
-  CellGrid<D> grid(boundary, spheres.r[first - 1], spheres.r[0], first);
-  for (std::uint32_t i = 0; i < first; ++i) grid.insert(i, spheres.center(i), spheres.r[i]);
-  int trials = trials_a_sphere;
-  for (std::size_t i = first; i < spheres.size(); ++i) {
-    if (i % spheres_a_question == 0 && monitor.stop()) trials = 1;  // they have places at least
-    const double r = spheres.r[i];
-    double best = -std::numeric_limits<double>::infinity();
-    for (int trial = 0; trial < trials && best < r; ++trial) {
-      const Vector<D> p = uniform_point(random, box);
-      const double room =
-          room_between_spheres(grid, p, std::max(best, -spheres.r[0]), r, 0, [&](std::uint32_t j) {
-            return Nearby{boundary.minimum_image(spheres.center(j) - p).squaredNorm(), spheres.r[j]};
-          });
-      if (room <= best) continue;
-      best = room;
-      spheres.set_center(i, p);
-    }
-  }
-}
-
-/// Where each kind ends in the order of descending radii.
-std::vector<std::size_t> ends_of_kinds(const std::vector<double>& descending) {
-  std::vector<std::size_t> ends;
-  const std::size_t count = descending.size();
-  for (std::size_t first = 0, last = 0; first < count; first = last) {
-    while (last < count && descending[last] > 0.5 * descending[first]) ++last;
-    if (static_cast<double>(count - last) <= least_of_kind * static_cast<double>(count)) last = count;
-    ends.push_back(last);
-  }
-  return ends;
-}
-
-std::size_t starts_of(std::size_t few) {
-  return std::clamp<std::size_t>(spheres_in_starts / few, 1, most_starts_of_few);
-}
-
-/// Reports to a run how far the kinds are, in the usual number of cycles.
-class KindsTeller {
+class KindsInBox {
  public:
-  KindsTeller(const SpheresInBox& in_box, const Reporter& report, const std::vector<std::size_t>& ends)
-      : in_box_(in_box), report_(report) {
-    if (ends.front() < spheres_in_starts)
-      of_starts_ = usual_cycles_of_few * static_cast<double>(starts_of(ends.front()) * ends.front());
-    all_ = before_ = of_starts_;
-    for (const std::size_t end : ends) all_ += usual_cycles_of_kind * static_cast<double>(end);
+  KindsInBox(const Vector<D>& edges, const std::vector<bool>& walls) : edges_(edges), walls_(walls) {
+    boundary_.edges = edges;
+    for (std::size_t k = 0; k < walls.size(); ++k)
+      if (walls[k]) boundary_.edges[static_cast<int>(k)] = 0;
   }
 
-  /// This number of the packings of few spheres is done.
-  void started(std::size_t starts, std::size_t of_all, double largest) {
-    tell(of_starts_ * static_cast<double>(starts) / static_cast<double>(of_all), largest);
+  const Boundary<D>& boundary() const { return boundary_; }
+  Bounds<D> bounds() const { return {Vector<D>::Zero(), edges_}; }
+  /// A random place, between the walls for a sphere of this radius.
+  Vector<D> any_place(double r, Random& random, const Monitor&) const { return place(r, random); }
+  std::optional<Vector<D>> trial(double r, Random& random) const { return place(r, random); }
+  SoftPacking engine(const Spheres<D>& spheres) const {
+    SoftPacking packing(spheres, edges_, soft_kernels().front(), true);
+    packing.keep_between_walls(walls_, 1);
+    return packing;
   }
-  /// This number of cycles of a kind is done; with the kind there are `spheres` in all.
-  void cycled(int cycles, std::size_t spheres, double largest) {
-    tell(before_ + std::min<double>(cycles, usual_cycles_of_kind) * static_cast<double>(spheres), largest);
-  }
-  void settled(std::size_t spheres) { before_ += usual_cycles_of_kind * static_cast<double>(spheres); }
-
- private:
-  void tell(double cycles, double largest) {
-    report_.milestone("relax", in_box_, largest, share_of_placing * cycles / all_);
-  }
-
-  const SpheresInBox& in_box_;
-  const Reporter& report_;
-  // In cycles times spheres that are swept.
-  double of_starts_ = 0, all_ = 0;
-  double before_ = 0;  // before the present kind
-};
-
-/// Sweeps in a box of fixed size until that no longer helps.
-template <int D>
-StageEnd settle_kind(Spheres<D>& spheres, const Vector<D>& edges, Reporter& report, const Relax& options,
-                     KindsTeller& teller) {
-  SoftPacking packing(spheres, edges, soft_kernels().front(), true);
-  const int sweeps = sweeps_of_wide(options, spheres.size());
-  StageEnd end = StageEnd::converged;
-  double largest = 1, mean = std::numeric_limits<double>::infinity();
-  int cycle = 0, done = 0;
-  const Resumable part(report, "kind", [&](Archive& a) { a(largest, mean, cycle, done, packing); });
-  while (cycle < most_cycles_of_kind) {
-    const std::optional<double> met =
-        sweep_cycle<D, true>(packing, sweeps, done, largest, [&] { return report.stop(); });
-    if (!met) end = StageEnd::cancelled;
-    if (!met) break;
-    ++cycle;
-    largest = *met;
-    const double before = mean;
-    mean = mean_overlap<D>(packing.squeeze(), spheres.r);
-    teller.cycled(cycle, spheres.size(), largest);
-    if (mean > helps * before || largest < settled) break;
-  }
-  report.effects["neighbour lists"] += packing.lists_built();
-  report.effects["relaxation"].calls += static_cast<std::uint64_t>(cycle * sweeps + done);
-  packing.write_to(spheres);
-  return end;
-}
-
-GrowingBox box_of_wide(const Relax& options, std::size_t spheres, double stop) {
-  return {.stop = stop,
-          .sweeps = sweeps_of_wide(options, spheres),
-          .beta = options.beta,
-          .last_overlap = last_mean};
-}
-
-/// The overlap by which the box grows, as `grow_apart` asks for it. The radii outlive it.
-template <int D>
-auto overlap_by_means(const std::vector<double>& radii) {
-  return [&radii](int cycle, double largest, const std::vector<float>& squeeze) {
-    const double share = std::min(1.0, std::pow(cycle / cycles_of_means, power_of_cycles));
-    return std::min(largest, std::max(mean_overlap<D>(squeeze, radii), share * largest));
-  };
-}
-
-/// Packs few spheres several times, and scales the densest packing to the box.
-template <int D>
-StageEnd place_few(Spheres<D>& spheres, const Vector<D>& edges, Reporter& report, const Relax& options,
-                   Random& random, KindsTeller& teller) {
-  double factor = std::pow(volume_of(spheres) / (start_of_few * edges.prod()), 1.0 / D);
-  factor = std::max(factor, 2.0001 * std::ranges::max(spheres.r) / edges.minCoeff());
-  const std::size_t starts = starts_of(spheres.size());
-  const GrowingBox growing = box_of_wide(options, spheres.size(), options.stop);
-  Spheres<D> start = spheres;
-  double least = std::numeric_limits<double>::infinity();
-  StageEnd end = StageEnd::converged;
-  for (std::size_t n = 0; n < starts && end == StageEnd::converged; ++n) {
-    Vector<D> box = factor * edges;
-    place_between(start, 0, box, random, report.monitor);
-    SoftPacking packing(start, box, soft_kernels().front(), true);
-    BoxGrowth growth;
-    end = grow_apart<D>(
-        packing, growing, growth, [&] { return report.monitor.stop(); }, overlap_by_means<D>(start.r),
+  /// In a box of their own, which is then scaled to this one.
+  StageEnd pack(Spheres<D>& spheres, const GrowingBox& growing, BoxGrowth& growth, double& dense,
+                Random& random, Reporter& report) const {
+    double factor = std::pow(volume_of(spheres) / (start_of_few * edges_.prod()), 1.0 / D);
+    factor = std::max(factor, 2.0001 * std::ranges::max(spheres.r) / edges_.minCoeff());
+    Vector<D> box = factor * edges_;
+    const KindsInBox start(box, walls_);
+    place_between(spheres, 0, start, random, report.monitor);
+    SoftPacking packing = start.engine(spheres);
+    const StageEnd end = grow_apart<D>(
+        packing, growing, growth, [&] { return report.monitor.stop(); }, overlap_by_means<D>(spheres.r),
         [](double, double) {});
-    teller.started(n + 1, starts, growth.molr);
     report.effects["neighbour lists"] += packing.lists_built();
     report.effects["relaxation"].calls += sweeps_of(growth, growing, end);
-    packing.write_to(start, box);
-    if (!(box.prod() < least)) continue;
-    least = box.prod();
-    resize_box<D>(start, box, edges);
-    spheres = start;
+    packing.write_to(spheres, box);
+    dense = 1 / box.prod();
+    resize_box<D>(spheres, box, edges_);
+    return end;
   }
-  return end;
-}
+
+ private:
+  Vector<D> place(double r, Random& random) const {
+    Bounds<D> box = bounds();
+    for (int k = 0; k < D; ++k) {
+      if (boundary_.repeats(k)) continue;
+      const double off = std::min(r, 0.5 * edges_[k]);
+      box.lower[k] += off;
+      box.upper[k] -= off;
+    }
+    return uniform_point(random, box);
+  }
+
+  Vector<D> edges_;
+  std::vector<bool> walls_;
+  Boundary<D> boundary_;
+};
 
 }  // namespace
 
 bool is_for_wide_sizes(const FillTask& task, const Relax& options) {
-  return (task.dimension == 2 || task.dimension == 3) && !task.has_walls && !task.is_tilted &&
+  return (task.dimension == 2 || task.dimension == 3) && !task.is_tilted &&
          options.method == RelaxMethod::fast && !(task.width_of_sizes < wide_sizes_from);
 }
 
@@ -231,39 +80,16 @@ template <int D>
 StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, const SpheresInBox& in_box,
                             Reporter& report, const Relax& options) {
   Random random = report.random(Stream::relax);
-  const std::size_t count = spheres.size();
-  const std::vector<std::uint32_t> order = largest_first(spheres.r);
-  Spheres<D> descending;
-  for (const std::size_t i : order) descending.push_back(Vector<D>::Zero(), spheres.r[i]);
-
-  const std::vector<std::size_t> ends = ends_of_kinds(descending.r);
-  KindsTeller teller(in_box, report, ends);
-  StageEnd end = StageEnd::converged;
-  std::size_t first = 0, kind = 0;
-  const Resumable part(report, "from the largest", [&](Archive& a) { a(first, kind, descending, random); });
-  for (std::size_t k = 0; k < kind; ++k) teller.settled(ends[k]);
-  for (bool goes_on = part.resumed(); kind < ends.size(); first = ends[kind++]) {
-    Spheres<D> there = descending;
-    there.resize(ends[kind]);
-    const bool are_few = first == 0 && there.size() < spheres_in_starts;
-    if (std::exchange(goes_on, false))
-      ;  // they have their places
-    else if (are_few)
-      end = place_few(there, edges, report, options, random, teller);
-    else
-      place_between(there, first, edges, random, report.monitor);
-    if (end == StageEnd::converged) end = settle_kind<D>(there, edges, report, options, teller);
-    teller.settled(there.size());
-    for (std::size_t i = 0; i < there.size(); ++i) descending.set_center(i, there.center(i));
-  }
-  for (std::size_t i = 0; i < count; ++i) spheres.set_center(order[i], descending.center(i));
-  return end;
+  return place_kinds<D>(spheres, KindsInBox<D>(edges, in_box.task.walls), report, options, random,
+                        [&](double largest, double done) {
+                          report.milestone("relax", in_box, largest, share_of_placing * done);
+                        });
 }
 
 template <int D>
 StageEnd relax_wide(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box, Reporter& report,
                     const Relax& options, double overlap, double before) {
-  SoftPacking packing(spheres, edges, soft_kernels().front(), true);
+  SoftPacking packing = KindsInBox<D>(edges, in_box.task.walls).engine(spheres);
   const GrowingBox box =
       box_of_wide(options, spheres.size(), least_overlap(options, in_box.task.allowed_overlap));
   return let_box_grow<D>(packing, spheres, edges, in_box, report, box, {.molr = overlap}, before,

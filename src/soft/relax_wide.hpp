@@ -11,7 +11,7 @@ namespace bernal {
 /// have 2.9.
 inline constexpr double wide_sizes_from = 2.45;
 
-/// Whether relaxation in a periodic box treats sizes as wide, and starts with the largest spheres.
+/// Whether relaxation treats sizes as wide, and starts with the largest spheres.
 bool is_for_wide_sizes(const FillTask& task, const Relax& options);
 
 /// The share of `sweeps_a_cycle` between two growths of the box if sizes are wide.
@@ -36,7 +36,6 @@ inline double wide_start(const FillTask& task) { return 1.06 * task.attainable; 
 template <int D>
 StageEnd place_from_largest(Spheres<D>& spheres, const Vector<D>& edges, const SpheresInBox& in_box,
                             Reporter& report, const Relax& options);
-
 /// Relaxation in a growing box for wide sizes. The box grows by the mean overlap divided by beta, and not by
 /// the largest: the mean by number or by volume, whichever is larger. One small sphere between two large ones
 /// may overlap them by half of its size for long, and by the largest overlap the box would grow by half

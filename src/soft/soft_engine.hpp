@@ -10,8 +10,8 @@
 namespace bernal {
 
 /// Overlapping spheres that push each other apart in a periodic box of 1 to 8 dimensions. The engine is
-/// `SoftPacking` in up to three dimensions without walls, and `NeighborRelaxation` in more dimensions,
-/// between walls, or in a tilted box. Their headers say what the calls do.
+/// `SoftPacking` in up to three dimensions, and `NeighborRelaxation` in more or in a tilted box. Their
+/// headers say what the calls do.
 template <int D>
 class SoftEngine {
  public:
@@ -20,8 +20,8 @@ class SoftEngine {
   /// without walls. Precondition: every edge, and the shortest period, is at least the largest diameter.
   SoftEngine(const Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls = {},
              double share = 1, bool by_octaves = false, const Tilt& tilt = {})
-      : engine_(make(spheres, edges, walls.empty(), by_octaves, tilt)) {
-    if (!walls.empty()) std::get<NeighborRelaxation<D>>(engine_).keep_between_walls(walls, share);
+      : engine_(make(spheres, edges, by_octaves, tilt)) {
+    if (!walls.empty()) std::visit([&](auto& engine) { engine.keep_between_walls(walls, share); }, engine_);
   }
 
   void wear_lists(double wear) {
@@ -59,24 +59,19 @@ class SoftEngine {
   }
 
  private:
-  // In more than three dimensions there is but one kind, and only two and three know tilted boxes.
   static constexpr bool knows_tilt = D == 2 || D == 3;
   using Engine =
-      std::conditional_t<knows_tilt,
-                         std::variant<NeighborRelaxation<D>, SoftPacking, NeighborRelaxation<D, knows_tilt>>,
-                         std::conditional_t<D <= 3, std::variant<NeighborRelaxation<D>, SoftPacking>,
-                                            std::variant<NeighborRelaxation<D>>>>;
+      std::conditional_t<knows_tilt, std::variant<SoftPacking, NeighborRelaxation<D, knows_tilt>>,
+                         std::variant<std::conditional_t<D <= 3, SoftPacking, NeighborRelaxation<D>>>>;
 
-  static Engine make(const Spheres<D>& spheres, const Vector<D>& edges, bool is_open, bool by_octaves,
-                     const Tilt& tilt) {
+  static Engine make(const Spheres<D>& spheres, const Vector<D>& edges, bool by_octaves, const Tilt& tilt) {
     if constexpr (knows_tilt)
       if (tilt != Tilt{})
         return Engine(std::in_place_type<NeighborRelaxation<D, true>>, spheres, edges, tilt);
-    if constexpr (D <= 3) {
-      if (is_open)
-        return Engine(std::in_place_type<SoftPacking>, spheres, edges, soft_kernels().front(), by_octaves);
-    }
-    return Engine(std::in_place_type<NeighborRelaxation<D>>, spheres, edges);
+    if constexpr (D <= 3)
+      return Engine(std::in_place_type<SoftPacking>, spheres, edges, soft_kernels().front(), by_octaves);
+    else
+      return Engine(std::in_place_type<NeighborRelaxation<D>>, spheres, edges);
   }
 
   Engine engine_;

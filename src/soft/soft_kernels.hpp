@@ -57,7 +57,16 @@ struct SweepTask {
   /// Axes along which the box is shorter than four of the largest radii, one bit each, the first the lowest:
   /// there two spheres may overlap in two images.
   unsigned narrow_axes = 0;
+  /// Axes that end at walls, bits as above: there centres keep `wall_share` times their radius away from both
+  /// ends, to rounding and never less, or stay in the middle where there is no room for that.
+  unsigned walled_axes = 0;
+  float wall_share = 1;
 };
+
+/// A little more than rounding takes from a radius on its way to a coordinate.
+inline constexpr float above_rounding = 1 + 0x1p-21f;
+/// The longest distance that a centre keeps from a wall, in units of the coordinates: below half of the edge.
+inline constexpr float most_from_wall = 0x1.fffffep30f;
 
 /// The box, or a part of it that is cut out along some axes, in units of the coordinates.
 struct SoftRegion {

@@ -156,6 +156,24 @@ BERNAL_INLINE Floats across(Floats d, Floats edge) {
   return d - Floats(Ints(edge) | sign);
 }
 
+/// A coordinate on an axis that ends at walls, after a step: it does not wrap round, and keeps this distance
+/// from both ends; that of no sphere is NaN and counts as none.
+BERNAL_INLINE Ints between_walls(Ints from, Floats step, Floats distance) {
+  const Floats longest = all(0x1p30f), farthest = all(most_from_wall);
+  const Floats capped = step < longest ? (step > -longest ? step : -longest) : longest;
+  const Ints way = to_ints(capped);
+  const Ints is_down = way < 0;
+  const Unsigned x = Unsigned(from), length = Unsigned(is_down ? -way : way);
+  const Unsigned room = is_down ? x : ~x;
+  const Unsigned moved = length < room ? length : room;
+  const Unsigned to = is_down ? x - moved : x + moved;
+  const Floats kept = distance < farthest ? distance : where(distance >= farthest, farthest);
+  const Unsigned lowest = Unsigned(to_ints(kept)) + 1;
+  const Unsigned highest = -lowest;
+  const Unsigned above = to < lowest ? lowest : to;
+  return Ints(above > highest ? highest : above);
+}
+
 template <bool measure, bool narrow, class Index>
 float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std::size_t begin,
                    std::size_t end) {
@@ -166,6 +184,7 @@ float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std
   for (std::size_t k = 0; k < 3; ++k)
     if (task.narrow_axes >> k & 1) shortest = std::min(shortest, task.scale[k] * 0x1p32f);
   const Floats half = all(0.5f * shortest);
+  const float from_wall = above_rounding * task.wall_share;
   Floats worst{};
   WallPush at_wall;
   for (std::size_t g = begin; g < end; ++g) {
@@ -225,9 +244,13 @@ float sweep_groups(const SweepTask& task, const NeighborRows<Index>* groups, std
         }
       }
       const Floats step = step_of(task, contacts);
-      store(mine, {wrapped_sum(me.x, to_ints(sum_x * step * inverse_x)),
-                   wrapped_sum(me.y, to_ints(sum_y * step * inverse_y)),
-                   wrapped_sum(me.z, to_ints(sum_z * step * inverse_z)), me.r});
+      const auto moved = [&](Ints x, Floats sum, Floats inverse, unsigned axis) BERNAL_INLINE_LAMBDA {
+        const Floats way = sum * step * inverse;
+        if (task.walled_axes >> axis & 1) return between_walls(x, way, me.r * from_wall * inverse);
+        return wrapped_sum(x, to_ints(way));
+      };
+      store(mine, {moved(me.x, sum_x, inverse_x, 0), moved(me.y, sum_y, inverse_y, 1),
+                   moved(me.z, sum_z, inverse_z, 2), me.r});
       if constexpr (measure) {
         if (task.squeeze) {
           store(task.squeeze + lanes * g + first, squares);

@@ -61,8 +61,9 @@ SoftPacking::SoftPacking(const Spheres<D>& spheres, const Vector<D>& edges, cons
   for (std::size_t i = 0; i < count_; ++i) set_place(spheres_[i], spheres.center(i));
 }
 
-SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels)
-    : SoftPacking(spheres.r, most_swelling, 3, kernels, false) {
+SoftPacking::SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels,
+                         bool by_octaves)
+    : SoftPacking(spheres.r, most_swelling, 3, kernels, by_octaves) {
   // Centres stay inside the bounds, so that images are apart by a margin of this width; along an axis that
   // repeats itself there is none.
   const double margin = most_swelling * surely_wide(spheres.r);
@@ -91,20 +92,40 @@ double SoftPacking::farthest_neighbor(double largest, double mean) {
   return 2 * (largest + relative_skin * mean);
 }
 
-/// As `SweepTask::narrow_axes`.
+void SoftPacking::keep_between_walls(const std::vector<bool>& walls, double share) {
+  walled_axes_ = 0;
+  wall_share_ = share;
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    if (walls[k]) walled_axes_ |= 1u << k;
+  for (SoftSphere& sphere : spheres_) stop_at_walls(sphere);
+}
+
+void SoftPacking::stop_at_walls(SoftSphere& sphere) const {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(walled_axes_ >> k & 1)) continue;
+    const double distance = static_cast<double>(above_rounding) * wall_share_ *
+                            static_cast<double>(sphere.r) / edges_[k] * 0x1p32;
+    const auto lowest =
+        static_cast<std::uint32_t>(std::min(distance, static_cast<double>(most_from_wall))) + 1;
+    sphere.x[k] =
+        static_cast<std::int32_t>(std::clamp(static_cast<std::uint32_t>(sphere.x[k]), lowest, 0u - lowest));
+  }
+}
+
+/// As `SweepTask::narrow_axes`. Across walls no sphere meets an image.
 unsigned SoftPacking::narrow_axes() const {
   constexpr double rounding = 1e-6;
   const double least = 4 * (1 + rounding) * static_cast<double>(sizes_.largest);
   unsigned axes = 0;
   for (int k = 0; k < dimension_; ++k)
     if (edges_[static_cast<std::size_t>(k)] < least) axes |= 1u << k;
-  return axes;
+  return axes & ~walled_axes_;
 }
 
 /// In edges / 2^32, where all spheres and edges are alike and there are no walls; else 0.
 float SoftPacking::diameter_of_all() const {
   const bool alike = sizes_.equal && edges_[0] == edges_[1] && edges_[1] == edges_[2];
-  return alike && !walls_ ? 2 * swelling_ * radii_[0] / scale_of(edges_)[0] : 0;
+  return alike && !walls_ && walled_axes_ == 0 ? 2 * swelling_ * radii_[0] / scale_of(edges_)[0] : 0;
 }
 
 float SoftPacking::move_all(float omega, bool measure, bool each) {
@@ -122,7 +143,9 @@ float SoftPacking::move_all(float omega, bool measure, bool each) {
                        .measure = measure,
                        .squeeze = each ? squeeze_.data() : nullptr,
                        .force = each ? force_.data() : nullptr,
-                       .narrow_axes = narrow_axes()};
+                       .narrow_axes = narrow_axes(),
+                       .walled_axes = walled_axes_,
+                       .wall_share = static_cast<float>(wall_share_)};
   if (walls_) walls_->look_anew(measure);
   life_.swept();
   if (in_blocks_) return blocks_->sweep(task);

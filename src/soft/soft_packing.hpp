@@ -54,7 +54,13 @@ class SoftPacking {
 
   /// Preconditions: all centres are inside the container, which outlives this; every period of it is at least
   /// `most_swelling` times the largest diameter.
-  SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels);
+  SoftPacking(const Spheres<3>& spheres, const Container& container, const SoftKernels& kernels,
+              bool by_octaves = false);
+
+  /// In a box, before the first sweep: along axes with walls, centres keep `share` times their radius away
+  /// from both ends, or stay in the middle if there is no room for that. So no sphere reaches an image of
+  /// another across a wall.
+  void keep_between_walls(const std::vector<bool>& walls, double share);
 
   /// In a container, before the first sweep: radii are smaller by this length where spheres meet walls.
   void relieve_walls(double by) { walls_->relieve(by); }
@@ -123,6 +129,7 @@ class SoftPacking {
 
   float diameter_of_all() const;
   unsigned narrow_axes() const;
+  void stop_at_walls(SoftSphere& sphere) const;
   float move_all(float omega, bool measure, bool each);
   double measure(float omega, bool each);
   template <int D>
@@ -142,6 +149,8 @@ class SoftPacking {
   int dimension_;
   std::array<double, 3> edges_;
   Vector<3> corner_ = Vector<3>::Zero();
+  unsigned walled_axes_ = 0;  // as `SweepTask::walled_axes`
+  double wall_share_ = 1;
   SoftSizes sizes_;
   ListLife life_;
   SoftLists lists_;

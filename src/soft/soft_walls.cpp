@@ -149,9 +149,10 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
                   .id = id,
                   .first = static_cast<std::uint32_t>(found.until.size()),
                   .first_run = static_cast<std::uint32_t>(found.least_until.size()),
-                  .last = place(sphere)};
+                  .built_at = place(sphere)};
+  near.last = near.built_at;
   found.has_fine |= view.is_fine;
-  const double moved = way(stands_[id].at, near.last).norm();
+  const double moved = way(stands_[id].at, near.built_at).norm();
   near.beyond = (view.is_fine ? stands_[id].clearance : view.reach) - moved;
   for (const Piece& piece : view.pieces) {
     if (piece.distance - moved >= radius_at_wall(sphere) + skin_) {

@@ -119,10 +119,12 @@ class SoftWalls {
     std::uint8_t planes = 0;  // their number, at most `most_planes`
     bool is_fine = false;     // as of its view
     std::uint32_t id = 0, first = 0, first_run = 0,
-                  count = 0;             // its pieces: the first `count` of its view, in until_
-    Vector<3> last = Vector<3>::Zero();  // `seen_from` as a place
-    double way = 0;                      // at least the way from where the lists were built to `last`
-    double beyond = 0;                   // no other facet is nearer to it than this less the way
+                  count = 0;  // its pieces: the first `count` of its view, in until_
+    Vector<3> built_at = Vector<3>::Zero(), last = Vector<3>::Zero();  // `last` is `seen_from` as a place
+    double way = 0;  // at least the way from `built_at` to `last`, back and forth
+    /// No facet that is not among its pieces is nearer to `built_at`; of a fine view none at all is nearer to
+    /// `last` than this less `way`.
+    double beyond = 0;
   };
   /// A plane in place of a facet, from `seen_from`. The planes of a patch follow each other.
   struct Plane {
@@ -178,6 +180,10 @@ class SoftWalls {
   bool push_by_planes(std::uint32_t n, const SoftSphere& sphere, WallPush& out) const;
   double touch(std::uint32_t n, double r, std::vector<WallContact>& contacts);
   void take_for_planes(std::uint32_t n, double r, double reach, std::vector<WallContact>& contacts);
+  /// No facet that is not among the pieces of a sphere is nearer to this place.
+  double beyond(const NearSphere& near, const Vector<3>& at) const {
+    return near.beyond - way(near.built_at, at).norm();
+  }
   double look_through(const NearSphere&, double reach, std::vector<WallContact>& contacts);
   double ask(NearSphere&, double r, std::vector<WallContact>& contacts) const;
   bool look(const Vector<3>& at, double r, double skin, std::uint32_t id);

@@ -11,7 +11,7 @@
 
 namespace bernal {
 
-/// What decides how a box of given edges is best filled with spheres of given radii.
+/// What decides how a domain is best filled with spheres of given radii.
 struct FillTask {
   int dimension = 3;
   double packing_fraction = 0;  ///< that is asked for
@@ -34,6 +34,8 @@ struct Task {
   double attainable = 1;
   /// Random close packing of the sizes without walls, as predicted; 0 where no stage asks.
   double close_packing = 0;
+  /// By the plan, for stages that choose their method.
+  FillTask fill_task = {};
   Domain domain = {};
   Frame frame = {};  ///< of the packer's coordinates
 
@@ -52,8 +54,6 @@ struct Task {
   std::vector<bool> walls = {};
   /// The edges that the box is to end with, where the scene says so.
   std::optional<Vector<dynamic>> target_edges = {};
-  /// By the plan, for stages that choose their method.
-  FillTask fill_task = {};
 
   /// Of a periodic box with these edges; all 0 where it is upright.
   Tilt tilt(const Vector<dynamic>& edges) const {

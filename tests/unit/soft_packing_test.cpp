@@ -39,6 +39,47 @@ TEST(SoftKernels, GiveTheSameBitsInEveryInstructionSet) {
   }
 }
 
+/// Along axes with walls centres keep their radii from both ends, whatever pushes them, and no two spheres
+/// meet across a wall; in every instruction set alike.
+TEST(SoftPacking, KeepsSpheresBetweenWalls) {
+  for (const std::vector<bool>& walls : {std::vector{false, false, true}, std::vector{true, true, true}})
+    for (const Crowd<3>& crowd :
+         {equal_crowd(2000), mixed_crowd(2000), Crowd<3>(400, 0.9, {2, 2, 0.25}, 0.9, 1)}) {
+      Spheres<3> expected;
+      for (const SoftKernels& kernels : soft_kernels()) {
+        SCOPED_TRACE(kernels.name);
+        SoftPacking packing(crowd.spheres, crowd.edges, kernels);
+        packing.keep_between_walls(walls, 1);
+        for (int k = 0; k < 60; ++k) packing.sweep(omega);
+        Spheres<3> spheres = crowd.spheres;
+        Vector<3> edges;
+        packing.write_to(spheres, edges);
+        for (int k = 0; k < 3; ++k)
+          for (std::size_t i = 0; i < spheres.size() && walls[static_cast<std::size_t>(k)]; ++i) {
+            const double r = std::min(spheres.r[i], (0.5 - 1e-7) * edges[k]);
+            ASSERT_GE(spheres.x[static_cast<std::size_t>(k)][i], r) << i;
+            ASSERT_LE(spheres.x[static_cast<std::size_t>(k)][i], edges[k] - r) << i;
+          }
+        if (expected.size() == 0) expected = spheres;
+        EXPECT_EQ(spheres, expected);
+      }
+    }
+}
+
+/// One that is pushed off a wall lies where the other pushes it to, and one that is pushed at it stops there.
+TEST(SoftPacking, StopsSpheresAtWalls) {
+  Spheres<3> spheres;
+  spheres.push_back({1, 1, 0.15}, 0.1);
+  spheres.push_back({1, 1, 0.25}, 0.1);
+  SoftPacking packing(spheres, Vector<3>(2, 2, 2), soft_kernels().front());
+  packing.keep_between_walls({false, false, true}, 1);
+  for (int k = 0; k < 20; ++k) packing.sweep(1);
+  Vector<3> edges;
+  packing.write_to(spheres, edges);
+  EXPECT_NEAR(spheres.x[2][0], 0.1, 1e-6);
+  EXPECT_NEAR(spheres.x[2][1], 0.3, 1e-6);
+}
+
 TEST(SoftPacking, IsTheSameForAnyNumberOfThreads) {
   const Crowd<3> crowd = mixed_crowd(30000);
   const auto with_threads = [&](std::size_t n) {

@@ -179,6 +179,28 @@ TEST(SoftWalls, AreAsGoodAsPlanesForAWhile) {
   EXPECT_LT(otherwise, touched / 20);
 }
 
+/// However long a sphere is shaken without lists being built anew, a wall that it overlaps pushes it off.
+TEST(SoftWalls, LetASphereGoThatHasMovedBackAndForth) {
+  constexpr double r = 0.1;
+  for (const Domain& shape :
+       {Domain(Box{{0, 0, 0}, {1, 1, 1}}), Domain(test::box_mesh({0, 0, 0}, {1, 1, 1}))}) {
+    const auto container = container_of(shape);
+    Spheres<3> spheres;
+    spheres.push_back({0.5, 0.5, 0.06}, r);
+    spheres.push_back({0.5, 0.58, 0.06}, r);
+    SoftPacking packing(spheres, *container, soft_kernels().front());
+    // Both overlap the floor. They part, are pushed together as their radii change, and never go far.
+    for (int k = 0; k < 4000; ++k) {
+      packing.swell(k % 2 == 0 ? 1 : 0.97);
+      packing.sweep_and_measure(5.6f);
+    }
+    packing.swell(1.05);
+    for (int k = 0; k < 50; ++k) packing.sweep(1);
+    packing.write_to(spheres);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_GE(spheres.x[2][i], 1.05 * r - 1e-6) << i;
+  }
+}
+
 // ---- where space repeats itself
 
 /// Two spheres that overlap each other across the seam of a column, and its wall: the one goes through the
