@@ -167,6 +167,11 @@ StageEnd grow_in(SpheresInBox& in_box, Reporter& report, const Grow& options) {
           report.milestone("grow", in_box, 0, done);
         }).end;
   free_of_overlap<D>(spheres, edges, in_box.task, report);
+  if (end == StageEnd::hit_limit)
+    report.missed = fmt::format(
+        "their box has become {} of the largest diameters wide, and grow knows no narrower one; take more "
+        "spheres, or relax instead",
+        HardSpheres<D>::smallest_edge);
   if (end != StageEnd::cancelled && stands_in_asked_box<D>(spheres, edges, in_box))
     return end_in_larger_box(StageEnd::converged, options.polish, report);
   grown = true;

@@ -50,6 +50,18 @@ TEST(Loose, IsAnEndOfItsOwnThatSaysWhy) {
   EXPECT_NE(text_of(folder / "out/scene.toml").find("draw = \"quantiles\""), std::string::npos);
 }
 
+/// Growth knows no box narrower than two and a half of the largest spheres.
+TEST(Growth, SaysThatItsBoxHasBecomeTooNarrow) {
+  const Folder folder;
+  const std::string scene =
+      "[container]\nkind = \"periodic\"\ndimension = 5\n[spheres]\ncount = 60\nradius = 1\n"
+      "[[stage]]\ndo = \"grow\"\n";
+  const std::string out = (folder / "out").string();
+  EXPECT_EQ(bernal({"pack", folder.write("scene.toml", scene).string(), "-o", out}).status, 3);
+  const std::string reason = report_of(out)["reason"];
+  EXPECT_NE(reason.find("2.5 of the largest diameters wide"), std::string::npos) << reason;
+}
+
 TEST(Loose, IsToldByHelp) { EXPECT_NE(bernal({"pack", "--help"}).out.find("loose"), std::string::npos); }
 
 TEST(Loose, ALoosePackingThatIsAskedForIsNone) {

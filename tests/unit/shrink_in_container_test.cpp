@@ -63,7 +63,7 @@ TEST(AsManyAsFit, AreFoundByShrinking) {
 TEST(WideSizesInAContainer, AreAsManyAsAreAskedFor) {
   const Packing packing = run(plan_with(cylinder, "count = 1900\n" + one_to_six));
   EXPECT_EQ(packing.outcome, Outcome::converged) << packing.reason;
-  EXPECT_EQ(packing.spheres.size(), 800u);
+  EXPECT_EQ(packing.spheres.size(), 1900u);
   testing::starts::expect_certified(packing);
 }
 
