@@ -246,7 +246,9 @@ int measure_folder(const MeasureCall& call) try {
   if (!call.local.empty()) {
     if (!measured.local)
       throw Error(ErrorCode::bad_argument,
-                  "--local: local packing fractions are those of spheres in two or three dimensions");
+                  is_tilted(packing.domain)
+                      ? "--local: local packing fractions are not known in tilted boxes; leave it out"
+                      : "--local: local packing fractions are those of spheres in two or three dimensions");
     write_local(packing, *measured.local, call.local);
   }
   if (!call.contacts.empty())

@@ -66,14 +66,25 @@ void take_tilt(const Tilt& tilt, FileBox& box) {
   box.upper[1] -= std::max(0.0, yz);
 }
 
+[[noreturn]] void fail_of_tilts(const ForeignLines& lines) {
+  lines.fail(
+      fmt::format("the tilts of a box are xy xz yz, all three and in this order, as in "
+                  "\"{} xy xz yz pp pp pp\"",
+                  box_item));
+}
+
 /// The three lines after "ITEM: BOX BOUNDS pp pp ff", or "… xy xz yz pp pp pp" with a tilt in each.
 FileBox read_bounds(const Reading& reading, ForeignLines& lines) {
   FileBox box = FileBox::of_three(AxisEnd::unsaid);
   const auto words = lines.words();
-  std::size_t axis = 0;
+  std::size_t axis = 0, tilts = 0;
   for (std::size_t k = 3; k < words.size(); ++k) {
     if (words[k] == "abc" || words[k] == "origin") refuse_skewed(reading, lines.number());
-    if (words[k] == "xy" || words[k] == "xz" || words[k] == "yz") continue;
+    if (words[k] == "xy" || words[k] == "xz" || words[k] == "yz") {
+      if (tilts == 3 || words[k] != tilt_names[tilts]) fail_of_tilts(lines);
+      ++tilts;
+      continue;
+    }
     const bool is_period = words[k] == "pp";
     if (axis == 3 || words[k].size() != 2 ||
         (!is_period && words[k].find_first_not_of("fsm") != words[k].npos))
@@ -83,14 +94,24 @@ FileBox read_bounds(const Reading& reading, ForeignLines& lines) {
     box.ends[axis++] = is_period ? AxisEnd::period : words[k] == "ff" ? AxisEnd::wall : AxisEnd::wrapped;
   }
   if (axis != 0 && axis != 3) lines.fail("the ends of three axes are expected, such as pp pp ff");
+  if (tilts != 0 && tilts != 3) fail_of_tilts(lines);
   Tilt tilt{};
   for (std::size_t k = 0; k < 3; ++k) {
     lines.require_next("the box");
     const auto bounds = lines.words();
-    if (bounds.size() != 2 && bounds.size() != 3) lines.fail("two bounds of the box are expected");
+    if (tilts == 3 && bounds.size() != 3)
+      lines.fail(
+          fmt::format("two bounds of the box and the tilt {} are expected, as \"{} xy xz yz\" says, and here "
+                      "stand {} words; was the line cut off?",
+                      tilt_names[k], box_item, bounds.size()));
+    if (tilts == 0 && bounds.size() != 2)
+      lines.fail(
+          fmt::format("two bounds of the box are expected, and here stand {} words; a third is a tilt where "
+                      "\"{} xy xz yz\" announces it",
+                      bounds.size(), box_item));
     box.lower[k] = lines.number(bounds[0], "lower bound");
     box.upper[k] = lines.number(bounds[1], "upper bound");
-    if (bounds.size() == 3) tilt[k] = lines.number(bounds[2], "tilt");
+    if (tilts == 3) tilt[k] = lines.number(bounds[2], "tilt");
   }
   if (tilt != Tilt{}) take_tilt(tilt, box);
   return box;

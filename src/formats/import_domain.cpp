@@ -74,6 +74,7 @@ FileBox box_of_import(const FileContents& contents, const ImportOptions& options
                                options.box.size()));
     box = {std::vector<double>(dimension), options.box, std::vector<AxisEnd>(dimension, AxisEnd::period)};
     words = "as ‹box› says";
+    if (contents.box && contents.box->tilt != Tilt{}) words += ", upright, where the file has a tilted one";
   } else if (contents.box) {
     box = *contents.box;
   } else {
@@ -120,12 +121,18 @@ std::string edges_in_words(const std::vector<double>& edges, Unit unit) {
   return fmt::format("{:.10g} {}", fmt::join(edges, " x "), name_of(unit));
 }
 
-/// The last two tilts are of the third axis.
+/// Throws for a tilted box with an end at a wall, which would be skewed.
+void refuse_skewed_walls(const FileBox& box, const Reading& reading) {
+  if (box.tilt == Tilt{} || std::ranges::find(box.ends, AxisEnd::wall) == box.ends.end()) return;
+  reading.fail(
+      fmt::format("the box is tilted and does not repeat itself along every axis, and no container with "
+                  "skewed walls is known; give ‹periodic={}› if it does, else what the spheres lie in, by "
+                  "‹box› or ‹container›",
+                  box.ends.size() == 2 ? "xy" : "xyz"));
+}
+
+/// The last two tilts are of the third axis. Precondition: the box has no walls.
 void take_tilt(const FileBox& from, PeriodicBox& box) {
-  if (!box.walls.empty())
-    refuse_words(
-        "the box of the file is tilted, and only boxes that repeat themselves along every axis can be; "
-        "give ‹periodic›, or write the packing in an upright box");
   if (box.dimension == 2 && (from.tilt[1] != 0 || from.tilt[2] != 0))
     refuse_words("the box of the file is tilted out of its plane; leave ‹dimension› out");
   box.tilt.assign(from.tilt.begin(), from.tilt.begin() + (box.dimension == 3 ? 3 : 1));
@@ -222,6 +229,7 @@ ImportDomain domain_of_import(FileContents& contents, Unit unit, const Reading& 
   }
   std::string why;
   const FileBox box = box_of_import(contents, options, why);
+  refuse_skewed_walls(box, reading);
   return domain_of_box(box, unit, why);
 }
 

@@ -1,6 +1,7 @@
 #include "formats/lammps.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 
 #include <fmt/format.h>
@@ -35,13 +36,21 @@ UnitStyle style_of_unit(Unit length) {
   return {"lj", length, "kg", length == Unit::mm ? 1e9 : 1 / (metres * metres * metres)};
 }
 
+/// Whether a tilt is longer than half the edge that it lies along. LAMMPS before 2022 refuses such a box
+/// unless it is told to take it.
+bool is_tilted_far(const Exported& file) {
+  const Vector<3> edges = file.box().size();
+  const auto [xy, xz, yz] = file.tilt();
+  return std::max(std::abs(xy), std::abs(xz)) > 0.5 * edges[0] || std::abs(yz) > 0.5 * edges[1];
+}
+
 void write_lammps(const Exported& file, TextFile& out) {
   const UnitStyle units = style_of_unit(file.unit());
   out.add("# ", file.title(), "; lengths in ", name_of(file.unit()), ", masses in ", units.mass,
           "; of density ", file.densities_in_words(), " kg/m3\n");
   out.add("# for: units ", units.name, "; dimension ", file.dimension(), "; boundary ", lammps_boundary(file),
-          "; atom_style sphere; neighbor ", 0.5 * file.largest_radius(), " bin; read_data ", file.name(),
-          "\n");
+          "; atom_style sphere; neighbor ", 0.5 * file.largest_radius(), " bin; ",
+          is_tilted_far(file) ? "box tilt large; " : "", "read_data ", file.name(), "\n");
   write_atoms(out, file, units.density, "Atoms # sphere");
 }
 
@@ -85,6 +94,13 @@ const AtomStyle& style_of_atoms(std::string_view said, std::size_t columns, cons
                         bernal::quoted(said)));
 }
 
+/// Whether the line is the heading of another section, "Velocities" or "Pair Coeffs": words without a number.
+bool is_heading(std::span<const std::string_view> words) {
+  return std::ranges::none_of(words, [](std::string_view word) {
+    return word.find_first_of("0123456789") != word.npos || is_number(word);
+  });
+}
+
 /// The part of the file before the atoms.
 struct DataHead {
   std::uint64_t atoms = 0;
@@ -92,6 +108,7 @@ struct DataHead {
   FileBox box = FileBox::of_three(AxisEnd::unsaid);
   std::array<bool, 3> has_axis{};
   bool has_tilt = false;
+  bool has_section = false;  ///< a section stands before the atoms, whose rows have words of any kind
   std::vector<std::string> not_units = {};  ///< clauses of remarks that sound like units but are not
 
   /// "10 atoms", "0 3 xlo xhi", "0.5 0 0 xy xz yz"; other lines are ignored.
@@ -117,13 +134,19 @@ struct DataHead {
     }
     const bool is_general = words.size() == 4 && words[3].ends_with("vec");
     if (is_general) refuse_skewed(reading, lines.number());
-    if (words.size() == 6 && words[3] == "xy" && words[4] == "xz" && words[5] == "yz") {
+    const bool names_tilt = std::ranges::any_of(words, [](std::string_view word) {
+      return std::ranges::find(tilt_names, word) != std::end(tilt_names);
+    });
+    if (words.size() == 6 && std::ranges::equal(words.subspan(3), tilt_names)) {
       Tilt tilt;
       for (std::size_t k = 0; k < 3; ++k) tilt[k] = lines.number(words[k], words[3 + k]);
       if (has_tilt && tilt != box.tilt) lines.fail("a line before this one says another tilt of the box");
       box.tilt = tilt;
       has_tilt = true;
+    } else if (names_tilt && !has_section) {
+      lines.fail("the tilts of a box are three numbers and the words xy xz yz, such as \"0.5 0 0 xy xz yz\"");
     }
+    has_section |= is_heading(words);
   }
 };
 
@@ -179,13 +202,6 @@ void take_remark(const ForeignLines& lines, FileContents& contents, DataHead& he
       head.not_units.emplace_back(clause);
     }
   }
-}
-
-/// Whether the line is the heading of another section, "Velocities" or "Pair Coeffs": words without a number.
-bool is_heading(std::span<const std::string_view> words) {
-  return std::ranges::none_of(words, [](std::string_view word) {
-    return word.find_first_of("0123456789") != word.npos || is_number(word);
-  });
 }
 
 void read_atoms(std::string_view said, std::uint64_t claimed, const Reading& reading, ForeignLines& lines,

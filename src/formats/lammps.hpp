@@ -7,6 +7,9 @@
 
 namespace bernal {
 
+/// The tilts of a box, in the order of a `Tilt`, as LAMMPS names them.
+inline constexpr std::string_view tilt_names[] = {"xy", "xz", "yz"};
+
 /// Writes the body of a LAMMPS data file, after its first lines: counts, box, and under the heading a line
 /// `id type diameter density x y z` for each sphere; densities are divided by
 /// `unit_of_density`, in kg/m³.

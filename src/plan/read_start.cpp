@@ -62,11 +62,16 @@ void require_tilt_of_start(const Scene& scene, const PeriodicBox& there, double 
   for (std::size_t k = 0; k < 3; ++k) {
     const double stated = k < ours.size() ? ours[k] : 0;
     const double of_start = k < there.tilt.size() ? in_our_unit * there.tilt[k] : 0;
-    if (!(std::abs(stated - of_start) <= rounding * std::ranges::max(edges)))
+    if (std::abs(stated - of_start) <= rounding * std::ranges::max(edges)) continue;
+    if (std::ranges::all_of(there.tilt, [](double length) { return length == 0; }))
       refuse(scene, "start",
-             fmt::format("the box of the start is tilted otherwise than the container: {:.10g}; give the "
-                         "container that \"tilt\"",
-                         fmt::join(there.tilt, ", ")));
+             "the box of the start is upright, and the container is tilted; leave its \"tilt\" out");
+    std::vector<double> tilt = there.tilt;
+    for (double& length : tilt) length *= in_our_unit;
+    refuse(scene, "start",
+           fmt::format("the box of the start is tilted otherwise than the container: {:.10g}; give the "
+                       "container that \"tilt\"",
+                       fmt::join(tilt, ", ")));
   }
 }
 

@@ -87,6 +87,20 @@ TEST_F(Measure, WritesTheLocalPackingOfEverySphereAndReplacesNothingElse) {
   }
 }
 
+TEST_F(Measure, HasNoLocalPackingInTiltedBoxes) {
+  const std::string text =
+      "[container]\nkind = \"periodic\"\nsize = [4, 4, 4]\ntilt = [1, 0, 0]\n"
+      "[spheres]\ncount = 1\ndiameter = 2\n";
+  folder.write("scene.toml", text);
+  folder.write("spheres.csv", "# unit: m\nx0,x1,x2,r\n1,1,1,1\n");
+  const Ended refused =
+      bernal({"measure", folder.path().string(), "--local", (folder / "local.csv").string()});
+  EXPECT_EQ(refused.status, 2) << refused.err;
+  EXPECT_NE(refused.err.find("tilted boxes"), std::string::npos) << refused.err;
+  EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "local.csv"));
+}
+
 TEST_F(Measure, WritesAllContactsAsWhatTheNameEndsIn) {
   const auto file = [&](const char* name) { return (folder / name).string(); };
   for (int twice = 0; twice < 2; ++twice) {

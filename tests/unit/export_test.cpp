@@ -87,6 +87,26 @@ TEST(Export, LammpsIsToldWhichAxesRepeatThemselves) {
             std::string::npos);
 }
 
+// LAMMPS before 2022 refuses boxes whose tilt is above half an edge, unless it is told to take them.
+TEST(Export, LammpsIsToldToTakeLargeTilts) {
+  const Folder folder;
+  const Vector<3> edges(3, 4, 5.3);
+  const auto asks = [&](const Tilt& tilt) {
+    Packing packing = periodic();
+    packing.domain = periodic_box(edges, {}, tilt);
+    packing.scene.container = PeriodicBox{
+        .dimension = 3, .size = {3, 4, 5.3}, .tilt = std::vector<double>(tilt.begin(), tilt.end())};
+    return text_of(exported_to(folder, packing, "lammps")).find("; box tilt large; read_data ") !=
+           std::string::npos;
+  };
+  EXPECT_FALSE(asks({}));
+  EXPECT_FALSE(asks({1.25, -1.25, 1.75}));
+  EXPECT_TRUE(asks({1.75, 0, 0}));
+  EXPECT_TRUE(asks({0, -1.75, 0}));
+  EXPECT_FALSE(asks({0, 0, 1.75}));  // along y
+  EXPECT_TRUE(asks({0, 0, -2.25}));
+}
+
 TEST(Export, DiscsStandInThePlane) {
   const Packing packing = in_plane();
   const Folder folder;

@@ -180,6 +180,36 @@ TEST(ImportLammps, ADumpOfATiltedBoxSaysTheBoundsOfItsCell) {
   EXPECT_EQ(std::get<Box>(shares.domain).tilt, cell.tilt);
 }
 
+TEST(ImportLammps, ADumpHasThreeTiltsOrNone) {
+  const auto with = [](const std::string& heading, const std::string& box, const ImportOptions& options) {
+    return Case{"a",
+                "ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS " + heading + "\n" + box +
+                    "ITEM: ATOMS id x y z radius\n1 4 3 2 1\n",
+                options};
+  };
+  const ImportOptions m{.unit = Unit::m};
+  const std::string tilted = "xy xz yz pp pp pp", rows = "-2 13 2\n-1 8 -3\n0 6 -1\n";
+  EXPECT_TRUE(is_tilted(packing_of(with(tilted, rows, m)).domain));
+  EXPECT_TRUE(is_tilted(packing_of(with("xy xz yz", rows, m)).domain));
+  expect_refusal(with(tilted, "-2 13\n-1 8\n0 6\n", m), {"a:6", "tilt xy", "2 words"});
+  expect_refusal(with(tilted, "-2 13 2\n-1 8\n0 6\n", m), {"a:7", "tilt xz", "2 words"});
+  expect_refusal(with(tilted, "-2 13 2 1\n-1 8 -3\n0 6 -1\n", m), {"a:6", "4 words"});
+  expect_refusal(with("pp pp pp", rows, m), {"a:6", "3 words", "xy xz yz"});
+  expect_refusal(with("", rows, m), {"a:6", "3 words", "xy xz yz"});
+  expect_refusal(with("pp pp pp", "0 10\n0 8 1\n0 6\n", m), {"a:7", "3 words"});
+  for (const char* heading : {"xy xz pp pp pp", "xz xy yz pp pp pp", "xy xz yz xy pp pp pp", "yz pp pp pp"})
+    expect_refusal(with(heading, rows, m), {"a:5", "xy xz yz", "in this order"});
+  // Walls of a tilted box would be skewed, and only one that repeats itself along every axis is known.
+  for (const char* ends : {"ff ff ff", "fs ss mm", "pp pp ff", "ff pp pp"})
+    expect_refusal(with(std::string("xy xz yz ") + ends, rows, m), {"a: ", "skewed walls", "‹periodic=xyz›"});
+  for (const char* periodic : {"none", "x", "yz"})
+    expect_refusal(with(tilted, rows, {.unit = Unit::m, .periodic = periodic}), {"skewed walls"});
+  EXPECT_TRUE(
+      is_tilted(packing_of(with("xy xz yz ff ff ff", rows, {.unit = Unit::m, .periodic = "xyz"})).domain));
+  const Case boxed = with(tilted, rows, {.unit = Unit::m, .box = {9, 9, 9}});
+  EXPECT_FALSE(is_tilted(packing_of(boxed).domain));
+}
+
 TEST(ImportLammps, DataOfSpheresAndOfAtoms) {
   const std::string head =
       "LAMMPS data file via write_data, version 1, timestep = 0, units = si\n\n2 atoms\n1 atom types\n\n"
@@ -214,6 +244,21 @@ TEST(ImportLammps, DataOfSpheresAndOfAtoms) {
   std::string again = tilted;
   again.insert(again.find("\n\nMasses"), "\n0.25 0 0 xy xz yz");
   expect_refusal({"a.data", again + "Atoms # sphere\n\n"}, {"a.data:10", "tilt"});
+  for (const char* row : {"0.5 -0.25 xy xz", "0.5 xy", "0.5 0 0 xz xy yz", "xy xz yz", "0.5 0 0 0 xy xz yz",
+                          "0.5 0 0 xy xz yz 0"}) {
+    std::string other = head;
+    other.insert(other.find("\n\nMasses"), std::string("\n") + row);
+    expect_refusal({"a.data", other + "Atoms # sphere\n\n"}, {"a.data:9", "0.5 0 0 xy xz yz"});
+  }
+  // Rows of a section have words of any kind.
+  std::string labels = head;
+  labels.insert(labels.find("Masses"), "Atom Type Labels\n\n1 xy\n\n");
+  EXPECT_FALSE(is_tilted(
+      packing_of({"a.data", labels + "Atoms # sphere\n\n1 1 1 2500 1 2 3\n2 1 1 2500 4 5 6\n"}).domain));
+  std::string between_walls = tilted;
+  between_walls.insert(0, "boundary f f f, ");
+  expect_refusal({"a.data", between_walls + "Atoms # sphere\n\n1 1 1 2500 1 2 3\n2 1 1 2500 4 5 6\n"},
+                 {"a.data: ", "skewed walls", "‹periodic=xyz›"});
   std::string general = head;
   general.insert(general.find("\n\nMasses"), "\n9 0 1 avec");
   expect_refusal({"a.data", general + "Atoms # sphere\n\n"}, {"a.data:9", "triclinic"});

@@ -173,7 +173,11 @@ TEST(ImportMistakes, ALatticeIsUprightToRounding) {
   expect_refusal(with("1e6 0 0 1e-9 10 0 0 0 10"), {"tilt", "longest edge"});
   const ImportedPacking tilted = imported(with("10 0 0 -2 9 0 1 0.5 8"));
   EXPECT_EQ(std::get<Box>(tilted.packing.domain).tilt, (Tilt{-2, 1, 0.5}));
-  expect_refusal(with("10 0 0 1 10 0 0 0 10\" pbc=\"T T F"), {"tilted"});
+  for (const char* ends : {"T T F", "F T T", "F F F"})
+    expect_refusal(with(std::string("10 0 0 1 10 0 0 0 10\" pbc=\"") + ends), {"a.xyz: ", "skewed walls"});
+  File walled = with("10 0 0 1 10 0 0 0 10");
+  walled.options.periodic = "none";
+  expect_refusal(walled, {"a.xyz: ", "skewed walls", "‹periodic=xyz›"});
 }
 
 /// A LAMMPS data file of one atom with that first line.

@@ -141,5 +141,19 @@ TEST_F(StartInFiles, ThatIsStoppedIsStillCertified) {
   }
 }
 
+TEST_F(StartInFiles, OfAResultFolderHasItsTilt) {
+  const std::string five = "[spheres]\ncount = 5\nradius = 0.5\n" + stage("relax"), upright = periodic(8),
+                    tilted = periodic(8, "tilt = [2.0, 0.0, 1.0]\n");
+  write_packing(packed(upright + five), folder / "upright");
+  write_packing(packed("unit = \"mm\"\n" + tilted + five), folder / "tilted");
+  EXPECT_NE(refusal(tilted + "[spheres]\nstart = \"upright\"\n" + stage("relax"))
+                .find("the box of the start is upright, and the container is tilted"),
+            std::string::npos);
+  // In the unit of the scene.
+  EXPECT_NE(refusal("unit = \"cm\"\n" + periodic(0.8) + "[spheres]\nstart = \"tilted\"\n" + stage("relax"))
+                .find("tilted otherwise than the container: 0.2, 0, 0.1; give"),
+            std::string::npos);
+}
+
 }  // namespace start_in_files_test
 }  // namespace bernal
