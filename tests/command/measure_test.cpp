@@ -92,7 +92,7 @@ TEST_F(Measure, HasNoLocalPackingInTiltedBoxes) {
       "[container]\nkind = \"periodic\"\nsize = [4, 4, 4]\ntilt = [1, 0, 0]\n"
       "[spheres]\ncount = 1\ndiameter = 2\n";
   folder.write("scene.toml", text);
-  folder.write("spheres.csv", "# unit: m\nx0,x1,x2,r\n1,1,1,1\n");
+  folder.write("spheres.csv", "# unit: m\nx,y,z,r\n1,1,1,1\n");
   const Ended refused =
       bernal({"measure", folder.path().string(), "--local", (folder / "local.csv").string()});
   EXPECT_EQ(refused.status, 2) << refused.err;
