@@ -30,8 +30,12 @@ constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
 /// More than what is likely to fit, in shares of it, is not tried at once.
 constexpr double most_of_attainable = 1.1;
 constexpr int most_hand_overs = 20;
-/// Fewer spheres of sizes that are not wide are stirred as densely in less time than they shrink.
-constexpr std::size_t worth_shrinking = 1000;
+/// As many as fit are found by letting spheres shrink where they are at least so many, in a third of the
+/// time. Fewer are stirred and pushed in.
+constexpr std::size_t many_to_fill = 20000;
+/// Where at least this share of the spheres is within three of its radii of a wall, pushing in more finds up
+/// to two in a hundred; elsewhere it finds nothing after they have shrunk.
+constexpr double share_near_walls = 0.7;
 /// After sizes are exchanged: as `taken_out`, and exchanges each time.
 constexpr double taken_out_dealing = 0.3;
 constexpr int exchanges_to_settle = 50;
@@ -59,17 +63,17 @@ class Relaxation {
         target_count_(std::max(crowd_.size(), in_bed.target_count())),
         shrinks_(!pours && !snug_ && in_bed.bed().dimension() == 3 && in_bed.begun == 0 &&
                  in_bed.crowded_start.empty() &&
-                 (wide_ || (in_bed.task.target.fill && crowd_.size() >= worth_shrinking))) {}
+                 (wide_ || (in_bed.task.target.fill && crowd_.size() >= many_to_fill))) {}
 
   StageEnd run() {
     enum class Step { shrink, free, exchange, push_in } step = Step::shrink;
     bool free = false, limited = false;
     const Resumable part(report_, "relaxation", [&](Archive& a) {
-      a(step, free, limited, share_out_, patience_, random_, over_, sweeps_of_exchange_);
+      a(step, free, limited, share_out_, patience_, random_, over_, is_full_, sweeps_of_exchange_);
     });
     if (step == Step::shrink) {
       free = shrinks_ && pack_shrinking();
-      step = Step::free;
+      if (!cancelled_) step = Step::free;
     }
     if (step == Step::free) {
       free = free || free_by_dropping();
@@ -79,7 +83,7 @@ class Relaxation {
     }
     if (step == Step::exchange) exchange();
     step = Step::push_in;
-    if (free && !over_ && !(shrinks_ && gain_ == 1)) push_in();
+    if (free && !over_ && !is_packed_full()) push_in();
     // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
     bool all_there = put_in_bed();
     for (int k = 0; !all_there && free && !cancelled_ && k < most_hand_overs; ++k) {
@@ -123,9 +127,13 @@ class Relaxation {
     const auto tell = [this](const Spheres<3>& spheres, double largest, double done) {
       report_.milestone("relax", spheres.size(), packing_fraction_of(spheres), largest, done);
     };
+    const auto is_over = [this](double sweeps) { return is_over_after(sweeps); };
     FirstThatFit packed = bernal::pack_shrinking(in_bed_, crowd_.size(), target_count_, skin_, random_,
-                                                 report_, options_, tell);
-    cancelled_ = over_ = packed.end == StageEnd::cancelled;
+                                                 report_, options_, is_over, tell);
+    const bool limited = packed.end == StageEnd::hit_limit;
+    cancelled_ = packed.end == StageEnd::cancelled;
+    over_ = cancelled_ || (limited && !packed.is_free);
+    is_full_ = packed.is_free && (packed.is_full || limited);
     crowd_.restore(std::move(packed.spheres));
     return packed.is_free && !cancelled_;
   }
@@ -139,10 +147,7 @@ class Relaxation {
 
   /// Settles and stirs. Returns whether the spheres came free of overlap.
   bool relax(double patience) {
-    const auto is_over = [this] {
-      return crowd_.sweeps() > options_.sweeps + sweeps_of_exchange_ ||
-             (options_.seconds > 0 && seconds() > options_.seconds);
-    };
+    const auto is_over = [this] { return is_over_after(crowd_.sweeps() - sweeps_of_exchange_); };
     const StageEnd end = crowd_.relax({.patience = patience,
                                        .hopeless_patience = hopeless_patience,
                                        .failures_a_burst = std::numeric_limits<int>::max(),
@@ -153,6 +158,22 @@ class Relaxation {
     cancelled_ = end == StageEnd::cancelled;
     over_ = over_ || cancelled_ || end == StageEnd::hit_limit;
     return end == StageEnd::converged;
+  }
+
+  /// Whether they have shrunk to what fits, and no more is likely to be pushed in.
+  bool is_packed_full() const {
+    if (!is_full_ || gain_ > 1 || crowd_.size() < many_to_fill) return false;
+    const Spheres<3>& spheres = crowd_.spheres();
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const double reach = 3 * spheres.r[i];
+      near += in_bed_.bed().container().clearance_within(spheres.center(i), reach) < reach;
+    }
+    return static_cast<double>(near) < share_near_walls * static_cast<double>(spheres.size());
+  }
+
+  bool is_over_after(double sweeps) const {
+    return sweeps > options_.sweeps || (options_.seconds > 0 && seconds() > options_.seconds);
   }
 
   /// How many of the sequence, up to the target, this share of those that are there is.
@@ -302,6 +323,7 @@ class Relaxation {
   const bool shrinks_;  // to begin with, see `pack_shrinking`
   double sweeps_of_exchange_ = 0;
   double share_out_ = taken_out, patience_ = options_.patience;  // of the next that are taken out
+  bool is_full_ = false;                                         // hardly more fit, as is known
   bool over_ = false;  // there is no more time, or no more patience of the user
   bool cancelled_ = false;
 };

@@ -23,6 +23,9 @@ constexpr int most_packings = 6;
 constexpr double margin = 1e-4;
 /// How much larger they are at most when they begin to shrink: the engine knows no more.
 constexpr double largest_start = 1.04;
+/// Where they would have to become smaller than this, some are stuck where a part is too thin for them, and
+/// say nothing of how many fit.
+constexpr double stuck_below = 0.95;
 
 /// An engine in a container, as `grow_apart` knows one: spheres shrink where a box would grow.
 class ShrinkingSpheres {
@@ -91,11 +94,14 @@ class KindsInContainer {
 };
 
 using Tell = std::function<void(const Spheres<3>&, double, double)>;
+using IsOver = std::function<bool(double sweeps)>;
 
 /// Packs the spheres, `factor` times as large as given, from random places; they shrink until they are free
-/// of overlap, and then are `factor` times as large.
+/// of overlap, and then are `factor` times as large. Ends `full` where some are stuck, and `hit_limit` where
+/// `is_over` says so of its sweeps of all, which it adds to `sweeps`.
 StageEnd pack_once(Spheres<3>& spheres, double& factor, const SpheresInBed& in_bed, Random& random,
-                   Reporter& report, const Relax& options, const Tell& tell) {
+                   Reporter& report, const Relax& options, double& sweeps, const IsOver& is_over,
+                   const Tell& tell) {
   enum class Step { place, shrink } step = Step::place;
   const KindsInContainer where(in_bed.bed().container(), in_bed.bed().places(), factor);
   const auto tell_share = [&](double largest, double done) { tell(spheres, largest, done); };
@@ -112,15 +118,22 @@ StageEnd pack_once(Spheres<3>& spheres, double& factor, const SpheresInBed& in_b
   const GrowingBox growing = box_of_wide(options, spheres.size(), least_overlap(options, 0));
   BoxGrowth growth;
   const Resumable shrinking(report, "shrinking", [&](Archive& a) { a(growth, factor, packing); });
+  bool is_stopped = false, is_limited = false;
+  const auto stop = [&] {
+    is_stopped = report.stop();
+    is_limited = is_over(static_cast<double>(sweeps_of(growth, growing, StageEnd::cancelled)));
+    return is_stopped || is_limited || factor < stuck_below;
+  };
   const StageEnd end = grow_apart<3>(
-      engine, growing, growth, [&] { return report.stop(); }, overlap_by_means<3>(spheres.r),
-      [&](double, double largest) {
+      engine, growing, growth, stop, overlap_by_means<3>(spheres.r), [&](double, double largest) {
         tell_share(largest, share_of_placing + (1 - share_of_placing) * share_of_work(growth, growing));
       });
+  sweeps += static_cast<double>(sweeps_of(growth, growing, end));
   report.effects["neighbour lists"] += packing.lists_built();
   report.effects["relaxation"].calls += sweeps_of(growth, growing, end);
   packing.write_to(spheres);
-  return end;
+  if (end != StageEnd::cancelled || is_stopped) return end;
+  return is_limited ? StageEnd::hit_limit : StageEnd::full;
 }
 
 /// How much larger than asked for spheres that fill this share of the container begin.
@@ -131,7 +144,8 @@ double start_of(double packing_fraction, const FillTask& task) {
 }  // namespace
 
 FirstThatFit pack_shrinking(const SpheresInBed& in_bed, std::size_t count, std::size_t most, double larger_by,
-                            Random& random, Reporter& report, const Relax& options, const Tell& tell) {
+                            Random& random, Reporter& report, const Relax& options, const IsOver& is_over,
+                            const Tell& tell) {
   const double volume = in_bed.task.container->volume();
   const auto first = [&](std::size_t n) {
     Spheres<3> spheres = in_bed.drawn(n).spheres;
@@ -140,27 +154,41 @@ FirstThatFit pack_shrinking(const SpheresInBed& in_bed, std::size_t count, std::
   };
   FirstThatFit packed{.spheres = first(count)}, best;
   int packings = 0;
+  double sweeps = 0;
+  std::size_t too_many = most + 1;  // did not come free
   double factor = start_of(volume_of(packed.spheres) / volume, in_bed.task.fill_task);
-  const Resumable part(report, "shrinking packings",
-                       [&](Archive& a) { a(packings, packed.spheres, factor, best.spheres); });
+  const Resumable part(report, "shrinking packings", [&](Archive& a) {
+    a(packings, packed.spheres, factor, best.spheres, sweeps, too_many);
+  });
   // Each packing is as long as what is still to come.
+  double told = 0;
   const Tell tell_of_all = [&](const Spheres<3>& spheres, double largest, double done) {
-    tell(spheres, largest, 1 - std::exp2(-packings) * (1 - 0.5 * done));
+    told = std::max(told, 1 - std::exp2(-packings) * (1 - 0.5 * done));
+    tell(spheres, largest, told);
   };
   for (;;) {
-    packed.end = pack_once(packed.spheres, factor, in_bed, random, report, options, tell_of_all);
+    const double before = sweeps;
+    packed.end = pack_once(
+        packed.spheres, factor, in_bed, random, report, options, sweeps,
+        [&](double now) { return is_over(before + now); }, tell_of_all);
     packed.is_free = packed.end == StageEnd::converged && factor >= 1 + margin;
     if (packed.end != StageEnd::converged) break;
     const std::size_t there = packed.spheres.size();
+    if (!packed.is_free) too_many = std::min(too_many, there);
     if (packed.is_free && there > best.spheres.size()) best.spheres = packed.spheres;
     const double reached = volume_of(packed.spheres) * std::pow(factor, 3) / volume;
     ++packings;
-    const std::size_t fitting =
-        std::min(most, in_bed.count_filling((1 - packings * less_than_reached) * reached));
-    const bool is_enough =
-        packed.is_free && static_cast<double>(fitting) < (1 + worth_another) * static_cast<double>(there);
-    if (is_enough || packings == most_packings) break;
-    packed.spheres = first(packed.is_free ? fitting : std::max<std::size_t>(1, std::min(fitting, there - 1)));
+    // What the last packing says, if that lies between what has fitted and what has not; else the middle.
+    const std::size_t fits = best.spheres.size();
+    std::size_t next = std::min(most, in_bed.count_filling((1 - packings * less_than_reached) * reached));
+    const bool is_between = next > fits && next < too_many;
+    if (!is_between && too_many > most)
+      next = fits;
+    else if (!is_between)
+      next = fits > 0 ? (fits + too_many) / 2 : too_many - 1;
+    best.is_full = static_cast<double>(next) < (1 + worth_another) * static_cast<double>(fits);
+    if (best.is_full || packings == most_packings) break;
+    packed.spheres = first(std::max<std::size_t>(1, next));
     factor = start_of(volume_of(packed.spheres) / volume, in_bed.task.fill_task);
   }
   if (best.spheres.size() == 0) return packed;

@@ -148,6 +148,8 @@ std::vector<Key> keys_of(const Entry& entry, std::size_t n) {
     std::erase_if(keys, [&](const Key& k) {
       return n % 2 == 0 ? k.name == "periodic" : k.name == "obstacles" || k.name == "rounding";
     });
+  if (entry.find("tilt") && entry.find("walls"))  // so do these
+    std::erase_if(keys, [&](const Key& k) { return k.name == (n % 2 == 0 ? "tilt" : "walls"); });
   for (const schema::Choice& choice : entry.choices)
     for (std::size_t i = 0; i < choice.size(); ++i)
       if (i != n % choice.size())
@@ -157,6 +159,10 @@ std::vector<Key> keys_of(const Entry& entry, std::size_t n) {
             const bool is_needed = k.required && std::ranges::find(chosen, name) != chosen.end();
             return k.name == name && !is_needed;
           });
+  // A tilt is a length beside lengths, which "proportions" of a box that follows are not.
+  if (std::ranges::any_of(keys, [](const Key& k) { return k.name == "tilt"; }) &&
+      std::ranges::none_of(keys, [&](const Key& k) { return k.name == "size" || k.name == "edge"; }))
+    std::erase_if(keys, [](const Key& k) { return k.name == "tilt"; });
   return keys;
 }
 
