@@ -74,6 +74,14 @@ inline std::uint64_t sweeps_of(const BoxGrowth& growth, const GrowingBox& box, S
          static_cast<std::uint64_t>(growth.sweeps);
 }
 
+/// Counts what a growth took.
+template <class Engine>
+void count_growth(Reporter& report, const Engine& packing, const BoxGrowth& growth, const GrowingBox& box,
+                  StageEnd end) {
+  report.effects["neighbour lists"] += packing.lists_built();
+  report.effects["relaxation"].calls += sweeps_of(growth, box, end);
+}
+
 /// The share of the work that is over. Until growths are predicted, it is a function of the logarithm of the
 /// overlap.
 inline double share_of_work(const BoxGrowth& growth, const GrowingBox& box) {
@@ -187,7 +195,8 @@ void have_places(Spheres<D>& spheres) {
 /// `before` of the run is over then.
 template <int D, class Engine, class OverlapOf>
 StageEnd let_box_grow(Engine& packing, Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_box,
-                      Reporter& report, const GrowingBox& box, const BoxGrowth& begin, double before, OverlapOf&& overlap_of) {
+                      Reporter& report, const GrowingBox& box, const BoxGrowth& begin, double before,
+                      OverlapOf&& overlap_of) {
   forget_places(spheres.x);
   BoxGrowth growth = begin;
   const Resumable part(report, "growing box", [&](Archive& a) { a(growth, in_box.edges, packing); });
@@ -198,8 +207,7 @@ StageEnd let_box_grow(Engine& packing, Spheres<D>& spheres, Vector<D>& edges, Sp
   };
   const StageEnd end = grow_apart<D>(packing, box, growth, stop, overlap_of,
                                      [&](double factor, double) { teller.grown(factor); });
-  report.effects["neighbour lists"] += packing.lists_built();
-  report.effects["relaxation"].calls += sweeps_of(growth, box, end);
+  count_growth(report, packing, growth, box, end);
   have_places(spheres);
   packing.write_to(spheres, edges);
   return end;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "bernal/domain/domain.hpp"
 #include "soft/from_largest.hpp"
 #include "work/free_of_overlap.hpp"
 #include "work/random_insertion.hpp"
@@ -16,11 +17,8 @@ namespace {
 template <int D>
 class KindsInBox {
  public:
-  KindsInBox(const Vector<D>& edges, const std::vector<bool>& walls) : edges_(edges), walls_(walls) {
-    boundary_.edges = edges;
-    for (std::size_t k = 0; k < walls.size(); ++k)
-      if (walls[k]) boundary_.edges[static_cast<int>(k)] = 0;
-  }
+  KindsInBox(const Vector<D>& edges, const std::vector<bool>& walls)
+      : edges_(edges), walls_(walls), boundary_(boundary_of<D>(periodic_box(edges, walls))) {}
 
   const Boundary<D>& boundary() const { return boundary_; }
   Bounds<D> bounds() const { return {Vector<D>::Zero(), edges_}; }
@@ -44,8 +42,7 @@ class KindsInBox {
     const StageEnd end = grow_apart<D>(
         packing, growing, growth, [&] { return report.monitor.stop(); }, overlap_by_means<D>(spheres.r),
         [](double, double) {});
-    report.effects["neighbour lists"] += packing.lists_built();
-    report.effects["relaxation"].calls += sweeps_of(growth, growing, end);
+    count_growth(report, packing, growth, growing, end);
     packing.write_to(spheres, box);
     dense = 1 / box.prod();
     resize_box<D>(spheres, box, edges_);

@@ -81,8 +81,7 @@ class KindsInContainer {
     const StageEnd end = grow_apart<3>(
         engine, growing, growth, [&] { return report.monitor.stop(); }, overlap_by_means<3>(larger.r),
         [](double, double) {});
-    report.effects["neighbour lists"] += packing.lists_built();
-    report.effects["relaxation"].calls += sweeps_of(growth, growing, end);
+    count_growth(report, packing, growth, growing, end);
     packing.write_to(spheres);
     return end;
   }
@@ -129,8 +128,7 @@ StageEnd pack_once(Spheres<3>& spheres, double& factor, const SpheresInBed& in_b
         tell_share(largest, share_of_placing + (1 - share_of_placing) * share_of_work(growth, growing));
       });
   sweeps += static_cast<double>(sweeps_of(growth, growing, end));
-  report.effects["neighbour lists"] += packing.lists_built();
-  report.effects["relaxation"].calls += sweeps_of(growth, growing, end);
+  count_growth(report, packing, growth, growing, end);
   packing.write_to(spheres);
   if (end != StageEnd::cancelled || is_stopped) return end;
   return is_limited ? StageEnd::hit_limit : StageEnd::full;

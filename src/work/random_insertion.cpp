@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bernal/domain/domain.hpp"
 #include "core/every_dimension.hpp"
 
 namespace bernal {
@@ -15,9 +16,7 @@ void place_at_random(Spheres<D>& spheres, const Vector<D>& edges, Random& random
 template <int D>
 void displace_at_random(Spheres<D>& spheres, const Vector<D>& edges, const std::vector<bool>& walls,
                         double length, Random& random, const Tilt& tilt) {
-  TiltedBoundary<D> boundary(edges, tilt);
-  for (std::size_t k = 0; k < walls.size(); ++k)
-    if (walls[k]) boundary.edges[static_cast<int>(k)] = 0;
+  const TiltedBoundary<D> boundary = tilted_boundary_of<D>(periodic_box(edges, walls, tilt));
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     Vector<D> c = boundary.wrap(spheres.center(i) + length * uniform_direction<D>(random));
     for (int k = 0; k < D; ++k)
