@@ -63,6 +63,13 @@ inline void expect_certified(const Packing& packing) {
   EXPECT_TRUE(certificate.certified) << certificate.statement;
 }
 
+/// What a run leaves that is told to stop when it asks for so many times, on one thread.
+inline Packing stopped_after(const Plan& plan, int polls) {
+  Monitor monitor;
+  monitor.cancelled = [&] { return polls-- <= 0; };
+  return run(plan, {.seed = {}, .threads = 1, .monitor = monitor});
+}
+
 /// Random close packing of few spheres, as another program might leave it.
 inline Packing relaxed(int dimension, int count, const std::string& sizes = "radius = 1.0\n") {
   return run(

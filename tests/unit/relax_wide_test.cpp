@@ -154,10 +154,7 @@ TEST(WideSizes, EndWithValidSpheresWhenCancelled) {
   const Plan plan = plan_with(two_sizes(8, 0.25), 1500);
   for (const int polls : {0, 50, 1500}) {
     SCOPED_TRACE(polls);
-    int left = polls;
-    Monitor monitor;
-    monitor.cancelled = [&] { return left-- <= 0; };
-    const Packing packing = run(plan, {.seed = {}, .threads = 1, .monitor = monitor});
+    const Packing packing = testing::starts::stopped_after(plan, polls);
     EXPECT_EQ(packing.outcome, Outcome::cancelled);
     EXPECT_EQ(packing.spheres.size(), 1500u);
     testing::starts::expect_certified(packing);

@@ -70,10 +70,7 @@ TEST(WideSizesInAContainer, EndWithValidSpheresWhenCancelled) {
   const Plan plan = plan_with(cylinder, "fill = true\n" + one_to_six);
   for (const int polls : {0, 200, 4000}) {
     SCOPED_TRACE(polls);
-    int left = polls;
-    Monitor monitor;
-    monitor.cancelled = [&] { return left-- <= 0; };
-    const Packing packing = run(plan, {.seed = {}, .threads = 1, .monitor = monitor});
+    const Packing packing = testing::starts::stopped_after(plan, polls);
     EXPECT_EQ(packing.outcome, Outcome::cancelled);
     testing::starts::expect_certified(packing);
   }

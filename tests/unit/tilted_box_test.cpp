@@ -11,13 +11,13 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/random.hpp"
 #include "bernal/measure/contacts.hpp"
-#include "bernal/measure/measure.hpp"
 #include "bernal/run/run.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "near/point_grid.hpp"
 #include "soft/neighbor_relaxation.hpp"
 #include "support/packing_oracle.hpp"
 #include "support/plans.hpp"
+#include "support/tilted_cells.hpp"
 #include "work/free_of_overlap.hpp"
 
 // Tilted periodic boxes against all images, from the cell vectors by their definition.
@@ -25,42 +25,12 @@ namespace bernal {
 namespace tilted_box_test {
 
 using oracle::Rational;
+using testing::tilted::Cell;
+using testing::tilted::cells;
+using testing::tilted::random_spheres;
 
 double up(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
 double down(double x) { return std::nextafter(x, -std::numeric_limits<double>::infinity()); }
-
-struct Cell {
-  Vector<3> edges;
-  Tilt tilt;
-  int images;  ///< that the oracle looks at, to either side
-
-  Box box() const { return periodic_box(edges, {}, tilt); }
-  TiltedBoundary<3> boundary() const { return {edges, tilt}; }
-  /// (lx, 0, 0), (xy, ly, 0), (xz, yz, lz)
-  Vector<3> at(int a, int b, int c) const {
-    return {a * edges[0] + b * tilt[0] + c * tilt[1], b * edges[1] + c * tilt[2], c * edges[2]};
-  }
-  template <class Visit>
-  void for_each_image(const Visit& visit) const {
-    for (int c = -images; c <= images; ++c)
-      for (int b = -images; b <= images; ++b)
-        for (int a = -images; a <= images; ++a) visit(a, b, c);
-  }
-};
-
-const Cell cells[] = {{{1, 1, 1}, {0.5, 0.25, -0.375}, 4}, {{2, 1, 1.5}, {-0.75, 0.5, 0.5}, 5},
-                      {{1, 1, 1}, {1, 0, 0}, 5},           {{1, 1, 1}, {2.5, -1.25, 0.75}, 9},
-                      {{4, 0.5, 1}, {1.5, -2, 0.125}, 12}, {{1, 2, 0.5}, {0, 0.5, 0}, 8}};
-
-Spheres<3> random_spheres(const Cell& cell, std::size_t count, double smallest, double largest,
-                          std::uint64_t seed) {
-  Random random(seed, stream(Stream::test));
-  Spheres<3> spheres;
-  for (std::size_t i = 0; i < count; ++i)
-    spheres.push_back(uniform_point(random, Bounds<3>{Vector<3>::Zero(), cell.edges}),
-                      smallest + (largest - smallest) * random.uniform());
-  return spheres;
-}
 
 TEST(TiltedBoundary, WrapsIntoTheBrickByCellVectors) {
   Random random(1, stream(Stream::test));
@@ -356,49 +326,6 @@ TEST(TiltedBox, OneSphereInTheRhombohedralCellIsFaceCentredCubic) {
   const Packing packing = run(build(scene));
   EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
   EXPECT_NEAR(packing.packing_fraction(), std::numbers::pi / std::sqrt(18.0), 1e-11);
-}
-
-/// Measurements of pairs, as whole edges of tilt do not change what is near what.
-TEST(TiltedBox, ByWholeEdgesMeasuresAsTheUprightBox) {
-  const Cell upright{{1, 1, 1}, {0, 0, 0}, 2}, tilted{{1, 1, 1}, {1, -2, 1}, 2};
-  const Spheres<dynamic> s(random_spheres(upright, 200, 0.05, 0.07, 13));
-  const Measurements a = measure(s, upright.box()), b = measure(s, tilted.box());
-  EXPECT_EQ(a.contacts.pairs, b.contacts.pairs);
-  EXPECT_EQ(a.contacts.rattlers, b.contacts.rattlers);
-  ASSERT_TRUE(a.radial && b.radial);
-  EXPECT_EQ(a.radial->g, b.radial->g);
-  EXPECT_NEAR(a.order->mean_q6, b.order->mean_q6, 1e-6);
-  ASSERT_TRUE(a.structure && b.structure);
-  for (std::size_t k = 0; k < 10; ++k) {  // all wave vectors of these bins, in another order
-    EXPECT_EQ(a.structure->vectors[k], b.structure->vectors[k]);
-    EXPECT_NEAR(a.structure->s[k], b.structure->s[k], 1e-9 * (1 + a.structure->s[k]));
-  }
-  EXPECT_TRUE(a.left_out.empty());
-  EXPECT_EQ(b.left_out.size(), 2u);
-}
-
-/// S(k) of a crystal in its primitive cell has the peaks of the crystal.
-TEST(TiltedBox, StructureFactorKnowsTheReciprocalVectors) {
-  const double r = 0.5, edge = 1;
-  const Cell cell{{edge, edge * std::sqrt(0.75), edge * std::sqrt(2.0 / 3)},
-                  {edge / 2, edge / 2, edge * std::sqrt(1.0 / 12)},
-                  1};
-  // Twice the primitive cell along each vector: S is 8 at the wave vectors of the crystal, else 0.
-  const Cell twice{2 * cell.edges, scaled(cell.tilt, 2), 1};
-  Spheres<dynamic> s(3);
-  for (int k = 0; k < 8; ++k) s.push_back(cell.at(k & 1, k >> 1 & 1, k >> 2), r);
-  const Measurements m = measure(s, twice.box());
-  ASSERT_TRUE(m.structure);
-  // The first peak, of the planes (111), sqrt(2/3) apart.
-  const double first = 2 * std::numbers::pi / std::sqrt(2.0 / 3);
-  for (std::size_t b = 0; b < m.structure->k.size(); ++b) {
-    if (m.structure->k[b] < first - 0.1) {
-      EXPECT_NEAR(m.structure->s[b], 0, 1e-9);
-    }
-    if (std::abs(m.structure->k[b] - first) < 1e-6) {
-      EXPECT_NEAR(m.structure->s[b], 8, 1e-6);
-    }
-  }
 }
 
 }  // namespace tilted_box_test
