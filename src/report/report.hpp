@@ -47,7 +47,7 @@ std::vector<std::string> sources_in(const std::string& report);
 
 /// report.json: the keys of the file format, in a fixed order, with lengths in the scene's unit. Numbers that
 /// are not finite become null. The set of keys does not depend on the packing, except for either `container`
-/// or `box`, see `domain_json`; `min_wall_gap` is null if no sphere is near a wall.
+/// or `box`, see `domain_json`; `min_wall_gap` is null if there are no walls or no spheres.
 std::string json_of(const Report& report);
 /// The same without measured keys, and with `not_measured`.
 std::string json_of(const StreamedReport& report);

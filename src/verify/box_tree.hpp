@@ -97,6 +97,8 @@ class BoxTree {
   std::span<const Item> leaf(std::size_t l) const {
     return std::span(items_).subspan(begin_of_leaf(l), begin_of_leaf(l + 1) - begin_of_leaf(l));
   }
+  /// The box of all items.
+  const Box<D>& box() const { return boxes_[root]; }
   const Box<D>& box_of_leaf(std::size_t l) const { return boxes_[first_leaf_ + l]; }
 
   /// Calls visit(item) for every item whose box touches `query`.
@@ -114,11 +116,11 @@ class BoxTree {
     if (l + 1 < leaves()) for_each_leaf_touching(query, next(first_leaf_ + l), visit);
   }
 
-  /// The smallest distance(item) over all items, if no item is nearer to the query than distance_to_box(box)
-  /// for any box that contains it. Infinity for an empty tree.
+  /// The smallest distance(item) over all items that is below `best`, else `best`, if no item is nearer to
+  /// the query than distance_to_box(box) for any box that contains it. distance(item, best) may be any number
+  /// that is not below `best` where the distance is not.
   template <class DistanceToBox, class Distance>
-  double nearest(DistanceToBox distance_to_box, Distance distance) const {
-    double best = Box<D>::infinity;
+  double nearest(DistanceToBox distance_to_box, Distance distance, double best = Box<D>::infinity) const {
     nearest(root, distance_to_box, distance, best);
     return best;
   }
@@ -154,7 +156,7 @@ class BoxTree {
   void nearest(std::size_t n, DistanceToBox& distance_to_box, Distance& distance, double& best) const {
     if (!(distance_to_box(boxes_[n]) < best)) return;
     if (n >= first_leaf_) {
-      for (const Item& item : leaf(n - first_leaf_)) best = std::min(best, distance(item));
+      for (const Item& item : leaf(n - first_leaf_)) best = std::min(best, distance(item, best));
       return;
     }
     const bool left_first = distance_to_box(boxes_[2 * n]) <= distance_to_box(boxes_[2 * n + 1]);

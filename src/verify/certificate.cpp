@@ -71,40 +71,56 @@ std::string invalid_statement(std::uint64_t bad, std::uint64_t first, std::span<
       counted_spheres(bad), first, fmt::join(center, ", "), r);
 }
 
-/// The statement if some spheres are invalid, else nothing.
-std::optional<std::string> error_in(const SphereRows& spheres) {
+/// What a look at all spheres says: the statement if some are invalid, and the largest radius.
+struct Sizes {
+  std::optional<std::string> error;
+  double largest_radius = 0;
+};
+
+Sizes sizes_of(const SphereRows& spheres) {
   constexpr std::uint64_t piece = 4096;
   std::uint64_t bad = 0, first_bad = 0;
   std::vector<double> worst;
+  Sizes sizes;
   const auto width = static_cast<std::size_t>(spheres.dimension) + 1;
   verify::for_each_piece(spheres, piece, [&](std::uint64_t first, std::span<const double> values) {
     for (std::size_t n = 0; n < values.size() / width; ++n) {
       const std::span<const double> row = values.subspan(n * width, width);
+      sizes.largest_radius = std::max(sizes.largest_radius, row.back());
       if (row.back() > 0 && std::ranges::all_of(row, [](double x) { return std::isfinite(x); })) continue;
       if (bad++ > 0) continue;
       first_bad = first + n;
       worst.assign(row.begin(), row.end());
     }
   });
-  if (bad == 0) return std::nullopt;
-  return invalid_statement(bad, first_bad, std::span<const double>(worst).first(width - 1), worst.back());
+  if (bad > 0)
+    sizes.error =
+        invalid_statement(bad, first_bad, std::span<const double>(worst).first(width - 1), worst.back());
+  return sizes;
 }
-std::optional<std::string> error_in(const Spheres<dynamic>& spheres) {
+Sizes sizes_of(const Spheres<dynamic>& spheres) {
   std::uint64_t bad = 0, first = spheres.size();
+  Sizes sizes;
   std::mutex adding;
   parallel_ranges(spheres.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    double largest = 0;
     for (std::size_t i = begin; i < end; ++i) {
       bool good = std::isfinite(spheres.r[i]) && spheres.r[i] > 0;
       for (const auto& column : spheres.x) good = good && std::isfinite(column[i]);
+      largest = std::max(largest, spheres.r[i]);
       if (good) continue;
       const std::lock_guard lock(adding);
       ++bad;
       first = std::min<std::uint64_t>(first, i);
     }
+    const std::lock_guard lock(adding);
+    sizes.largest_radius = std::max(sizes.largest_radius, largest);
   });
-  if (bad == 0) return std::nullopt;
+  if (bad == 0) return sizes;
   const Vector<dynamic> c = spheres.center(first);
-  return invalid_statement(bad, first, {c.data(), static_cast<std::size_t>(c.size())}, spheres.r[first]);
+  sizes.error =
+      invalid_statement(bad, first, {c.data(), static_cast<std::size_t>(c.size())}, spheres.r[first]);
+  return sizes;
 }
 
 using NotThreeDimensions = std::integer_sequence<int, 1, 2, 4, 5, 6, 7, 8>;
@@ -124,17 +140,15 @@ verify::Tally judge_in(const Space& space, const Source& spheres, const Domain& 
                        const verify::Job& job) {
   const verify::Walls<D> walls = verify::walls_of<D>(domain);
   const auto slabs = slabs_of<D>(spheres, space, job.options().at_once);
-  const double known = verify::distances_known_up_to(job.options().gap);
   verify::Tally tally(job.options().list);
   std::vector<verify::Ball<D>> next = slabs.balls(0, space);
   for (std::size_t s = 0; s < slabs.size() && !job.stopped(); ++s) {
     job.set_part(s, slabs.size());
     const verify::BallTree<D> balls(std::exchange(next, {}));
     tally += verify::judge_pairs(balls, space, job);
-    const auto reach = space.reach_of(verify::widened(slabs.extent(s), known));
     if (s + 1 < slabs.size()) next = slabs.balls(s + 1, space);
     for (std::size_t t = s + 1; t < slabs.size() && !job.stopped(); ++t) {
-      if (!touch(slabs.extent(t), reach)) continue;
+      if (!verify::may_hold_near<D>(slabs.extent(s), slabs.extent(t), space, job)) continue;
       const std::vector<verify::Ball<D>> more = t > s + 1 ? slabs.balls(t, space) : decltype(next)();
       const std::span<const verify::Ball<D>> others = t > s + 1 ? more : next;
       tally += verify::judge_pairs_with(others, balls, space, job);
@@ -273,10 +287,10 @@ Certificate certificate_of(const Source& spheres, const Domain& domain, const Ce
   result.allowed_overlap = options.allowed_overlap;
   result.gap = options.gap;
   result.wall_gap = options.wall_gap;
-  if (auto message = error_in(spheres)) {
-    result.statement = *std::move(message);
+  if (Sizes sizes = sizes_of(spheres); sizes.error) {
+    result.statement = *std::move(sizes.error);
   } else {
-    const verify::Job job(options);
+    const verify::Job job(options, sizes.largest_radius);
     verify::Tally tally(0);
     if (options.threads > 0)
       tbb::task_arena(options.threads).execute([&] { tally = judge(spheres, domain, job); });
@@ -290,7 +304,7 @@ Certificate certificate_of(const Source& spheres, const Domain& domain, const Ce
     result.decided_exact = tally.decisions.by_exact;
     result.overlapping_pairs = tally.overlapping;
     result.protruding_spheres = tally.protruding;
-    if (tally.pairs > 0) {
+    if (std::isfinite(tally.worst_pair.ratio)) {
       result.worst_pair = tally.worst_pair.pair;
       result.max_overlap = tally.worst_pair.ratio;
     }

@@ -58,7 +58,8 @@ class BoxWall {
               "a box needs a finite corner and a positive finite size");
   }
 
-  WallState wall_state_of(const Ball<D>& ball, const CertifyOptions& options, Tally& tally) const {
+  WallState wall_state_of(const Ball<D>& ball, const CertifyOptions& options, double /*least*/,
+                          Tally& tally) const {
     PieceJudge judge(ball, options, tally);
     for (int k = 0; k < D; ++k) {
       if (!box_.has_wall(k)) continue;
@@ -81,7 +82,8 @@ class SphereWall {
             "a sphere needs a finite centre and a positive finite radius");
   }
 
-  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, double /*least*/,
+                          Tally& tally) const {
     const Vector<3> d = ball.c - sphere_.center;
     PieceJudge judge(ball, options, tally);
     judge.piece(sphere_.radius - std::hypot(d[0], d[1], d[2]),
@@ -103,7 +105,8 @@ class CylinderWall {
     unit_axis_ = cylinder.axis.stableNormalized();
   }
 
-  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, double /*least*/,
+                          Tally& tally) const {
     const Vector<3> w = ball.c - cylinder_.base;
     const Vector<3> across = w.cross(unit_axis_);
     const double height = w.dot(unit_axis_);
@@ -127,9 +130,9 @@ class CylinderWall {
 
 template <int D, class Wall>
 Walls<D> made(Wall wall) {
-  return [wall = std::make_shared<const Wall>(std::move(wall))](const Ball<D>& ball,
-                                                                const CertifyOptions& options, Tally& tally) {
-    return wall->wall_state_of(ball, options, tally);
+  return [wall = std::make_shared<const Wall>(std::move(wall))](
+             const Ball<D>& ball, const CertifyOptions& options, double least, Tally& tally) {
+    return wall->wall_state_of(ball, options, least, tally);
   };
 }
 
@@ -148,13 +151,14 @@ Walls<D> walls_of(const Domain& domain) {
     const Mesh& mesh = std::get<Mesh>(domain);
     return mesh.surface ? made<D>(TrueWall(mesh)) : made<D>(MeshWall(mesh));
   }
-  return [](const Ball<D>&, const CertifyOptions&, Tally&) { return WallState(); };
+  return [](const Ball<D>&, const CertifyOptions&, double, Tally&) { return WallState(); };
 }
 
 template <int D>
 Tally judge_walls(std::span<const Ball<D>> balls, const Walls<D>& walls, const Job& job) {
   return job.for_each("walls", balls.size(), 64, [&](std::size_t i, Tally& tally) {
-    const WallState state = walls(balls[i], job.options(), tally);
+    const WallState state = walls(balls[i], job.options(), job.least_wall_gap().value(), tally);
+    job.least_wall_gap().offer(state.gap);
     tally.add_ball({balls[i].index, state.gap}, state.inside);
     tally.least_wall_distance = std::min(tally.least_wall_distance, state.distance);
   });

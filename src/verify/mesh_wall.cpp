@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "bernal/core/error.hpp"
+#include "verify/least_gap.hpp"
 #include "verify/segment.hpp"
 
 namespace bernal::verify {
@@ -109,12 +110,6 @@ void check_closed(const Mesh& mesh) {
                     unpaired));
 }
 
-double distance_from_box(const Vector<3>& p, const Box<3>& box) {
-  double outside[3];
-  for (int k = 0; k < 3; ++k) outside[k] = std::max({box.lower[k] - p[k], 0.0, p[k] - box.upper[k]});
-  return std::hypot(outside[0], outside[1], outside[2]);
-}
-
 }  // namespace
 
 /// The least of the three segments and, if p projects
@@ -129,7 +124,8 @@ double distance_from_triangle(const Vector<3>& p, const Corners& v) {
   return inside ? std::min(best, std::abs(normal.dot(p - v[0])) / length) : best;
 }
 
-MeshWall::MeshWall(const Mesh& mesh) : mesh_(mesh), facets_(facets_of(mesh)) {}
+MeshWall::MeshWall(const Mesh& mesh)
+    : mesh_(mesh), facets_(facets_of(mesh)), largest_(largest_coordinate(facets_.box())) {}
 
 std::vector<MeshWall::Facet> MeshWall::facets_of(const Mesh& mesh) {
   check_numbers(mesh);
@@ -175,20 +171,31 @@ Truth MeshWall::clears(const Ball<3>& ball, const Reach& reach, const Facet& fac
   });
 }
 
-WallState MeshWall::wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
+WallState MeshWall::wall_state_of(const Ball<3>& ball, const CertifyOptions& options, double least,
+                                  Tally& tally) const {
   const Arithmetic arithmetic = options.arithmetic;
   const Reach reach{ball.r, options.wall_gap};
+  const double largest = std::max(largest_, largest_coordinate(ball.box()));
+  const double nearest_so_far = wall_reach(least, ball.r, options.wall_gap, largest);
+  const Box<3> near = widened(ball.box(), wall_distances_known_up_to(options));
+  // A box that is little larger holds few more triangles; from farther away the nearest is looked for alone.
+  const bool is_little = nearest_so_far <= 1.25 * ball.r;
+  Box<3> looked_at = near;
+  if (is_little) looked_at.include(widened(ball.box(), std::max(0.0, nearest_so_far - ball.r)));
   bool clear = true;
   double distance = Box<3>::infinity;
-  facets_.for_each_touching(widened(ball.box(), wall_distances_known_up_to(options)),
-                            [&](const Facet& facet) {
-                              ++tally.walls;
-                              clear &= clears(ball, reach, facet, arithmetic, tally) == Truth::yes;
-                              distance = std::min(distance, distance_from_triangle(ball.c, corners(facet)));
-                            });
+  facets_.for_each_touching(looked_at, [&](const Facet& facet) {
+    distance = std::min(distance, distance_from_triangle(ball.c, corners(facet)));
+    if (!touch(facet.extent, near)) return;
+    ++tally.walls;
+    clear &= clears(ball, reach, facet, arithmetic, tally) == Truth::yes;
+  });
 
   const bool center_is_inside = center_inside(ball, arithmetic, tally);
-  if (!center_is_inside) distance = -distance_from(ball.c);
+  if (!center_is_inside)
+    distance = -distance_from(ball.c);
+  else if (!is_little)
+    distance = std::min(distance, distance_from(ball.c, nearest_so_far));
   const bool holds = center_is_inside && clear;
   WallState state{.inside = holds};
   if (distance < Box<3>::infinity) state.add(distance, reach, holds);
@@ -213,9 +220,12 @@ bool MeshWall::center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& 
   return winding == 1;
 }
 
-double MeshWall::distance_from(const Vector<3>& p) const {
-  return facets_.nearest([&](const Box<3>& box) { return distance_from_box(p, box); },
-                         [&](const Facet& facet) { return distance_from_triangle(p, corners(facet)); });
+double MeshWall::distance_from(const Vector<3>& p, double below) const {
+  const double largest = std::max(largest_, p.cwiseAbs().maxCoeff());
+  const double nearest = facets_.nearest(
+      [&](const Box<3>& box) { return least_distance_from_box(p, box, largest); },
+      [&](const Facet& facet, double) { return distance_from_triangle(p, corners(facet)); }, below);
+  return nearest < below ? nearest : Box<3>::infinity;
 }
 
 bool MeshWall::is_farther_than(const Vector<3>& p, double distance) const {

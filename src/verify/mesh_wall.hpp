@@ -25,13 +25,15 @@ class MeshWall {
   /// indices, exact corners that match its vertices, and no boundary.
   explicit MeshWall(const Mesh& mesh);
 
-  /// Tests the ball against the near triangles and decides the side of its centre; counts both.
-  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const;
+  /// Tests the ball against the near triangles and decides the side of its centre; counts both. `least`: see
+  /// Walls.
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, double least,
+                          Tally& tally) const;
 
   /// Whether the mesh winds around the centre once. Exact.
   bool center_inside(const Ball<3>& ball, Arithmetic arithmetic, Tally& tally) const;
-  /// In double, to a few roundoffs.
-  double distance_from(const Vector<3>& p) const;
+  /// In double, to a few roundoffs; infinity where it is not below `below`.
+  double distance_from(const Vector<3>& p, double below = Box<3>::infinity) const;
   /// Whether all triangles are, in double and by a billionth more.
   bool is_farther_than(const Vector<3>& p, double distance) const;
 
@@ -52,6 +54,7 @@ class MeshWall {
 
   const Mesh& mesh_;
   BoxTree<Facet, 3> facets_;
+  double largest_;
 };
 
 }  // namespace bernal::verify

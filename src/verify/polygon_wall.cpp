@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verify/least_gap.hpp"
 #include "verify/predicates.hpp"
 #include "verify/space.hpp"
 
@@ -22,7 +23,8 @@ std::vector<PlaneEdge> PolygonWall::edges_of(const Polygon& polygon) {
   return edges;
 }
 
-WallState PolygonWall::wall_state_of(const Ball<2>& ball, const CertifyOptions& options, Tally& tally) const {
+WallState PolygonWall::wall_state_of(const Ball<2>& ball, const CertifyOptions& options, double least,
+                                     Tally& tally) const {
   const Arithmetic arithmetic = options.arithmetic;
   const Reach reach{ball.r, options.wall_gap};
   bool clear = true;
@@ -37,16 +39,23 @@ WallState PolygonWall::wall_state_of(const Ball<2>& ball, const CertifyOptions& 
                            });
 
   const bool inside = center_inside(ball, arithmetic, tally);
-  if (!inside) {
-    distance = Box<2>::infinity;
-    for (const PlaneEdge& edge : edges_.items())
-      distance = std::min(distance, distance_from_segment<2>(ball.c, edge.a, edge.b));
-    distance = -distance;
-  }
+  const double largest = std::max(largest_coordinate(edges_.box()), largest_coordinate(ball.box()));
+  if (inside)
+    distance = std::min(distance,
+                        distance_from(ball.c, wall_reach(least, ball.r, options.wall_gap, largest), largest));
+  else
+    distance = -distance_from(ball.c, Box<2>::infinity, largest);
   const bool holds = inside && clear;
   WallState state{.inside = holds};
   if (distance < Box<2>::infinity) state.add(distance, reach, holds);
   return state;
+}
+
+double PolygonWall::distance_from(const Vector<2>& p, double below, double largest) const {
+  const double nearest = edges_.nearest(
+      [&](const Box<2>& box) { return least_distance_from_box(p, box, largest); },
+      [&](const PlaneEdge& edge, double) { return distance_from_segment<2>(p, edge.a, edge.b); }, below);
+  return nearest < below ? nearest : Box<2>::infinity;
 }
 
 bool PolygonWall::center_inside(const Ball<2>& ball, Arithmetic arithmetic, Tally& tally) const {

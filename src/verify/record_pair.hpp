@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "verify/job.hpp"
+#include "verify/least_gap.hpp"
 #include "verify/sign.hpp"
 
 namespace bernal::verify {
@@ -21,8 +22,7 @@ void record_pair(const Job& job, std::uint64_t first, std::uint64_t second, doub
   const bool as_allowed = holds(allowed, tally.decisions);
   Decisions only_for_the_sign;
   const bool strictly = allowed == 0 ? as_allowed : holds(0, only_for_the_sign);
-  const double reach = sum + gap;
-  tally.add_pair({{first, second}, 0.0 - with_sign((distance - reach) / reach, strictly)}, as_allowed);
+  tally.add_pair({{first, second}, 0.0 - with_sign(gap_ratio(distance, sum, gap), strictly)}, as_allowed);
   if (gap > 0)
     tally.least_distance = std::min(tally.least_distance, on_side_of(gap, distance - sum, strictly));
 }

@@ -124,7 +124,7 @@ std::vector<PlaneEdge> RevolvedWall::edges_of(const Revolved& solid) {
   return edges;
 }
 
-WallState RevolvedWall::wall_state_of(const Ball<3>& ball, const CertifyOptions& options,
+WallState RevolvedWall::wall_state_of(const Ball<3>& ball, const CertifyOptions& options, double /*least*/,
                                       Tally& tally) const {
   const Arithmetic arithmetic = options.arithmetic;
   const Reach reach{ball.r, options.wall_gap};

@@ -16,7 +16,8 @@ class RevolvedWall {
   explicit RevolvedWall(const Revolved& solid);
 
   /// Tests the ball against the near edges and decides the side of its centre; counts both.
-  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const;
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, double least,
+                          Tally& tally) const;
 
  private:
   static std::vector<PlaneEdge> edges_of(const Revolved& solid);

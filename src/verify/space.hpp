@@ -36,6 +36,7 @@ struct OpenSpace {
     return Number(a) - Number(b);
   }
   static Box<D> reach_of(const Box<D>& box) { return box; }
+  static double largest_period() { return 0; }
   static double representative(int, double x) { return x; }
 };
 
@@ -73,6 +74,14 @@ struct PeriodicSpace {
   /// The representative coordinate. Exact: IEEE 754's remainder is not rounded. Precondition: finite.
   double representative(int k, double x) const {
     return 2 * std::abs(x) <= edges[k] ? x : std::remainder(x, edges[k]);  // x if the edge is infinite
+  }
+
+  /// Of those that are finite; 0 if none is.
+  double largest_period() const {
+    double largest = 0;
+    for (const double edge : edges)
+      if (edge < Box<D>::infinity) largest = std::max(largest, edge);
+    return largest;
   }
 
   /// The smallest |a - b + n edge| over integers n: |a - b| or edge - |a - b|, because |a - b| <= edge.

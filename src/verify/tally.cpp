@@ -13,6 +13,12 @@ void Tally::add_pair(const Certificate::Overlap& pair, bool clear) {
   overlaps.add(pair);
 }
 
+void Tally::add_distant_pair(std::uint64_t first, std::uint64_t second, double gap_ratio) {
+  const Certificate::Overlap pair{{std::min(first, second), std::max(first, second)},
+                                  0.0 - with_sign(gap_ratio, true)};
+  if (worse(pair, worst_pair)) worst_pair = pair;
+}
+
 void Tally::add_ball(const Certificate::Protrusion& ball, bool inside) {
   if (worse(ball, worst_wall)) worst_wall = ball;
   if (inside) return;

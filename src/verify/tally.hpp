@@ -85,7 +85,9 @@ struct Tally {
 
   /// Adds a near pair; `clear`: it overlaps no more than allowed.
   void add_pair(const Certificate::Overlap& pair, bool clear);
-  /// Adds a ball that is near a wall, or has an infinite gap.
+  /// Adds a pair that is not near and may be the closest all the same. `gap_ratio` is not negative.
+  void add_distant_pair(std::uint64_t first, std::uint64_t second, double gap_ratio);
+  /// Adds a ball; its gap is infinite where no wall is near enough for the smallest.
   void add_ball(const Certificate::Protrusion& ball, bool inside);
   Tally& operator+=(const Tally& other);
 };

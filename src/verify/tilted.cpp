@@ -98,8 +98,11 @@ class TiltedJudge {
   }
 
   Tally judge_all() const {
-    return job_.for_each("pairs", balls_.items().size(), 64,
-                         [this](std::size_t k, Tally& tally) { judge_ball(balls_.items()[k], tally); });
+    guess();
+    return job_.for_each("pairs", balls_.items().size(), 64, [this](std::size_t k, Tally& tally) {
+      judge_ball(balls_.items()[k], tally);
+      job_.least_pair_gap().offer(-tally.worst_pair.ratio);
+    });
   }
 
  private:
@@ -137,46 +140,98 @@ class TiltedJudge {
     return balls;
   }
 
-  void judge_ball(const TiltedBall<D>& ball, Tally& tally) const {
-    const Box<D> reach = widened(ball.box(), known_);
-    Turns<D> turns{};
-    judge_images<D - 1>(ball, reach, turns, tally);
+  /// So that the first balls are not compared with all images of all others: the gaps in some leaves, and
+  /// those of balls and their images along the first axis.
+  void guess() const {
+    constexpr std::size_t most = 256;
+    const std::size_t step = balls_.leaves() / most + 1;
+    for (std::size_t l = 0; l < balls_.leaves(); l += step) {
+      const auto balls = balls_.leaf(l);
+      for (std::size_t i = 0; i < balls.size(); ++i) {
+        Turns<D> turns{};
+        for (std::size_t j = i + 1; j < balls.size(); ++j) offer(balls[i], balls[j], turns);
+        turns[0] = 1;
+        offer(balls[i], balls[i], turns);
+      }
+    }
   }
+  void offer(const TiltedBall<D>& a, const TiltedBall<D>& b, const Turns<D>& turns) const {
+    const double ratio = gap_ratio(distance(a, b, turns), a.r + b.r, job_.options().gap);
+    job_.least_pair_gap().offer(with_sign(ratio, true));
+  }
+
+  void judge_ball(const TiltedBall<D>& ball, Tally& tally) const {
+    const Widening widening = job_.to_nearest_so_far(largest_coordinate(all_));
+    const double nearer = std::min(std::max(known_, widening.of(ball.box())), farthest_);
+    Turns<D> turns{};
+    judge_images<D - 1>(ball, {widened(ball.box(), known_), widened(ball.box(), nearer), widening}, turns,
+                        tally);
+  }
+
+  /// Where the balls are whose pairs with an image of a ball are decided, and where those are that may be
+  /// nearer to it than the nearest pair so far.
+  struct Reaches {
+    Box<D> near;
+    Box<D> nearer;
+    Widening widening;  ///< of the balls in `nearer`
+  };
 
   /// All images of the ball, moved by `turns` along the axes above K, that may touch the box of all.
   template <int K>
-  void judge_images(const TiltedBall<D>& ball, const Box<D>& reach, Turns<D>& turns, Tally& tally) const {
+  void judge_images(const TiltedBall<D>& ball, const Reaches& reaches, Turns<D>& turns, Tally& tally) const {
     if constexpr (K < 0) {
-      balls_.for_each_touching(reach, [&](const TiltedBall<D>& other) { judge(ball, other, turns, tally); });
+      balls_.for_each_touching(WidenedQuery{reaches.nearer, reaches.widening},
+                               [&](const TiltedBall<D>& other) {
+                                 judge(ball, other, turns, touch(other.box(), reaches.near), tally);
+                               });
     } else {
       const double edge = cell_.edge(K);
-      const double first = std::ceil((all_.lower[K] - reach.upper[K]) / edge - rounding * farthest_ / edge),
-                   last = std::floor((all_.upper[K] - reach.lower[K]) / edge + rounding * farthest_ / edge);
+      const Box<D> all = widened(all_, std::min(reaches.widening.of(all_), farthest_));
+      const double first = std::ceil((all.lower[K] - reaches.nearer.upper[K]) / edge -
+                                     rounding * farthest_ / edge),
+                   last = std::floor((all.upper[K] - reaches.nearer.lower[K]) / edge +
+                                     rounding * farthest_ / edge);
       for (double turn = first; turn <= last; ++turn) {
         turns[K] = turn;
-        Box<D> moved = reach;
-        for (int k = 0; k <= K; ++k) {
-          const double way = turn * cell_.of[K][k];
-          const double slack = turn == 0 ? 0 : rounding * (std::abs(way) + farthest_);
-          moved.lower[k] = rounded_down(moved.lower[k] + way) - slack;
-          moved.upper[k] = rounded_up(moved.upper[k] + way) + slack;
-        }
-        judge_images<K - 1>(ball, moved, turns, tally);
+        judge_images<K - 1>(ball,
+                            {moved<K>(reaches.near, turn), moved<K>(reaches.nearer, turn), reaches.widening},
+                            turns, tally);
       }
       turns[K] = 0;
     }
   }
 
+  /// The box moved by so many cell vectors of axis K, and wider by what that is rounded.
+  template <int K>
+  Box<D> moved(Box<D> box, double turn) const {
+    for (int k = 0; k <= K; ++k) {
+      const double way = turn * cell_.of[K][k];
+      const double slack = turn == 0 ? 0 : rounding * (std::abs(way) + farthest_);
+      box.lower[k] = rounded_down(box.lower[k] + way) - slack;
+      box.upper[k] = rounded_up(box.upper[k] + way) + slack;
+    }
+    return box;
+  }
+
   /// The image of `a` moved by `turns`, and b. Each pair is met from both of its balls.
-  void judge(const TiltedBall<D>& a, const TiltedBall<D>& b, const Turns<D>& turns, Tally& tally) const {
+  void judge(const TiltedBall<D>& a, const TiltedBall<D>& b, const Turns<D>& turns, bool near,
+             Tally& tally) const {
     if (a.index > b.index || (a.index == b.index && !is_positive<D>(turns))) return;
-    const Vector<D> way = cell_.moved(a.near, turns) - b.near;
+    const double apart = distance(a, b, turns);
+    if (!near) {
+      tally.add_distant_pair(a.index, b.index, gap_ratio(apart, a.r + b.r, job_.options().gap));
+      return;
+    }
     Turns<D> of_given;
     for (int axis = 0; axis < D; ++axis) of_given[axis] = turns[axis] + a.turns[axis] - b.turns[axis];
-    record_pair(job_, a.index, b.index, way.stableNorm(), a.r + b.r, tally,
-                [&]<class Number>(double allowed) {
-                  return images_clear<Number, D>(a, b, of_given, cell_, allowed, job_.options().gap);
-                });
+    record_pair(job_, a.index, b.index, apart, a.r + b.r, tally, [&]<class Number>(double allowed) {
+      return images_clear<Number, D>(a, b, of_given, cell_, allowed, job_.options().gap);
+    });
+  }
+
+  double distance(const TiltedBall<D>& a, const TiltedBall<D>& b, const Turns<D>& turns) const {
+    const Vector<D> way = cell_.moved(a.near, turns) - b.near;
+    return way.stableNorm();
   }
 
   const CellVectors<D> cell_;

@@ -22,9 +22,12 @@ class TrueWall {
   /// are set. Cost: some µs a piece, and O(n log n).
   explicit TrueWall(const Mesh& mesh);
 
-  /// Cost: O(log n), and for every near piece a few to some thousand points of the surface, most where a ball
-  /// and a wall of nearly its own curvature touch.
-  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const;
+  /// The distance of a ball that lies inside is that of the surface in double, off by up to the slack of its
+  /// pieces and 1e-8 of the radius, or by a millionth of what a piece bends where that is more. `least`: see
+  /// Walls. Cost: O(log n), and for every near piece a few to some thousand points of the surface, most where
+  /// a ball and a wall of nearly its own curvature touch.
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, double least,
+                          Tally& tally) const;
 
  private:
   struct Piece {

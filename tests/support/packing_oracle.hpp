@@ -1,6 +1,8 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 #include <variant>
@@ -175,18 +177,23 @@ struct Verdict {
   std::uint64_t protruding = 0;
   std::uint64_t near_at_least = 0;  ///< pairs whose boxes meet
   std::uint64_t near_at_most = 0;   ///< pairs whose boxes meet when they are grown by some roundoffs
-  double max_overlap = 0;           ///< over pairs whose boxes meet
+  double max_overlap = 0;           ///< over all pairs, and spheres with their images
   std::vector<std::array<std::uint64_t, 2>> pairs;  ///< that overlap, where they are listed
 };
 
 inline Verdict judge(const Spheres<3>& s, const Domain& shape, double allowed = 0) {
   Verdict v;
+  v.max_overlap = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < s.size(); ++i) {
     v.protruding += inside(s.center(i), s.r[i], shape) ? 0 : 1;
     for (std::size_t j = i + 1; j < s.size(); ++j) {
       v.overlapping += overlap(s, i, j, allowed) ? 1 : 0;
       v.near_at_least += boxes_touch(s, i, j) ? 1 : 0;
       v.near_at_most += boxes_touch(s, i, j, 0x1p-50) ? 1 : 0;
+      const Point d = point(s.center(i)) - point(s.center(j));
+      const Rational sum = Rational(s.r[i]) + Rational(s.r[j]);
+      const double ratio = std::sqrt(Rational(dot(d, d) / (sum * sum)).convert_to<double>());
+      v.max_overlap = std::max(v.max_overlap, 1 - ratio);
     }
   }
   return v;

@@ -89,7 +89,7 @@ inline Verdict judge(const Spheres<dynamic>& s, const Domain& domain, double all
       v.near_at_least += near ? 1 : 0;
       v.near_at_most += near || images_touch(s, i, j, periods, 0x1p-50) ? 1 : 0;
       const double ratio = std::sqrt(Rational(squared / (sum * sum)).convert_to<double>());
-      if (near) v.max_overlap = std::max(v.max_overlap, 1 - ratio);
+      v.max_overlap = std::max(v.max_overlap, 1 - ratio);
     }
   }
   v.overlapping = v.pairs.size();

@@ -58,8 +58,9 @@ Certificate expect_truth(const Spheres<3>& s, const Domain& shape, double allowe
   EXPECT_GE(filtered.pairs_tested, truth.near_at_least);
   EXPECT_LE(filtered.pairs_tested, truth.near_at_most);
   EXPECT_EQ(filtered.min_wall_gap<0, truth.protruding> 0);
-  EXPECT_EQ(filtered.worst_pair.has_value(), filtered.pairs_tested > 0);
+  EXPECT_EQ(filtered.worst_pair.has_value(), s.size() > 1);
   if (filtered.worst_pair) {
+    EXPECT_NEAR(filtered.max_overlap, truth.max_overlap, 1e-13 * (1 + std::abs(truth.max_overlap)));
     const auto [first, second] = *filtered.worst_pair;
     EXPECT_LT(first, second);
     EXPECT_EQ(filtered.max_overlap > 0, oracle::overlap(s, first, second));
@@ -211,7 +212,8 @@ TEST(Certificate, AllowedOverlapIsARatioOfTheSumOfRadii) {
 TEST(Certificate, SaysOneSentence) {
   const Box box{.corner = {0, 0, 0}, .size = {10, 10, 10}};
   EXPECT_EQ(certify(spheres({{2, 5, 5, 1}, {4.5, 5, 5, 1}, {5.5, 8, 8, 0.5}}), box).statement,
-            "Certified: 3 spheres, 0 near pairs and 18 walls decided exactly, no overlap, no protrusion.");
+            "Certified: 3 spheres, 0 near pairs and 18 walls decided exactly, no overlap, no protrusion; "
+            "closest pair gap 0.25 of the sum of radii.");
   EXPECT_EQ(certify(spheres({{2, 5, 5, 1}, {3.75, 6.75, 5, 1}}), box).statement,
             "Certified: 2 spheres, 1 near pair and 12 walls decided exactly, no overlap, no protrusion; "
             "closest pair "

@@ -203,7 +203,7 @@ TEST(PeriodicCylinder, HasASideAndNoLids) {
   EXPECT_EQ(
       certify(rows({{0, 1, 0, 0.5}}), column).statement,
       "Certified: 1 sphere in a periodic cylinder, 0 near pairs and 1 wall decided exactly, no overlap, "
-      "no protrusion.");
+      "no protrusion; closest pair gap 7 of the sum of radii.");
 }
 
 TEST(PeriodicCylinder, HasImagesAlongItsAxisToTheUlp) {

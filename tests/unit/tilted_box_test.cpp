@@ -125,6 +125,19 @@ bool overlaps(const Spheres<dynamic>& s, const Cell& cell) {
   return any;
 }
 
+/// The least (d - ri - rj) / (ri + rj) of all images.
+double least_gap_ratio(const Spheres<dynamic>& s, const Cell& cell) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < s.size(); ++i)
+    for (std::size_t j = i; j < s.size(); ++j)
+      cell.for_each_image([&](int a, int b, int c) {
+        if (i == j && a == 0 && b == 0 && c == 0) return;
+        const Vector<3> apart = Vector<3>(s.center(i)) - Vector<3>(s.center(j)) + cell.at(a, b, c);
+        least = std::min(least, apart.norm() / (s.r[i] + s.r[j]) - 1);
+      });
+  return least;
+}
+
 Certificate certificate(const Spheres<dynamic>& s, const Cell& cell) {
   const Certificate filtered = certify(s, cell.box());
   const Certificate exact = certify(s, cell.box(), {.arithmetic = Arithmetic::exact});
@@ -139,13 +152,16 @@ TEST(TiltedCertificate, SaysWhatAllImagesSay) {
   int certified = 0, refused = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed)
     for (const Cell& cell : cells)
-      for (const double r : {0.02, 0.08, 0.2, 0.45}) {
-        Spheres<dynamic> s(random_spheres(cell, r > 0.3 ? 1 : r > 0.1 ? 3 : 8, 0.8 * r, r, seed));
+      for (const double r : {0.0005, 0.02, 0.08, 0.2, 0.45}) {
+        const std::size_t count = r > 0.3 ? 1 : r > 0.1 ? 3 : r > 0.01 ? 8 : 40;
+        Spheres<dynamic> s(random_spheres(cell, count, 0.8 * r, r, seed));
         // Far from the box: centres are judged as they stand.
         const Spheres<dynamic> inside = s;
         s.set_center(0, s.center(0) + cell.at(3, -2, static_cast<int>(seed) - 4));
         const Certificate c = certificate(s, cell);
         EXPECT_EQ(c.certified, !overlaps(inside, cell)) << c.statement;
+        const double ratio = least_gap_ratio(inside, cell);
+        EXPECT_NEAR(-c.max_overlap, ratio, 1e-14 * (1 + ratio + 20 / r)) << c.statement;
         ++(c.certified ? certified : refused);
       }
   EXPECT_GT(certified, 20);

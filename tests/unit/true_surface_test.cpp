@@ -141,10 +141,13 @@ class InCadFile : public ::testing::Test {
     return read_container_mesh(file, {Unit::mm, smallest_radius}).mesh;
   }
 
-  static bool certified(const Mesh& mesh, const Vector<3>& c, double r) {
+  static Certificate certificate(const Mesh& mesh, const Vector<3>& c, double r) {
     Spheres<dynamic> spheres(3);
     spheres.push_back(c, r);
-    return certify(spheres, mesh).certified;
+    return certify(spheres, mesh);
+  }
+  static bool certified(const Mesh& mesh, const Vector<3>& c, double r) {
+    return certificate(mesh, c, r).certified;
   }
 
   /// A sphere that touches the wall but for a millionth of its radius in a direction, and beyond it.
@@ -154,6 +157,9 @@ class InCadFile : public ::testing::Test {
     EXPECT_TRUE(certified(mesh, touching - 1e-6 * r * n, r));
     EXPECT_FALSE(certified(mesh, touching + 1e-6 * r * n, r));
     EXPECT_FALSE(certified(mesh, touching + 2 * mesh.surface->worst_face().apart * n, r));
+    for (const double gap : {1e-6, 1e-3, 0.02})
+      EXPECT_NEAR(certificate(mesh, touching - gap * r * n, r).min_wall_gap, gap, 1e-7);
+    EXPECT_NEAR(certificate(mesh, touching - 0.01 * r * n, 1e-3 * r).min_wall_gap, 1009, 1e-4);
   }
 };
 
@@ -243,6 +249,8 @@ TEST_F(InCadFile, ASphereTouchesABSpline) {
   for (const Vector<3>& c : {Vector<3>(1, 2, 15), Vector<3>(-2, 1, 9), Vector<3>(0, -1, 20)}) {
     const double r = distance_by_samples(*wall.surface, c);
     EXPECT_TRUE(certified(wall, c, r * (1 - 1e-6)));
+    for (const double share : {1 - 1e-4, 0.3})
+      EXPECT_NEAR(certificate(wall, c, r * share).min_wall_gap, 1 / share - 1, 1e-6 / share);
     EXPECT_FALSE(certified(wall, c, r * (1 + 1e-6)));
     EXPECT_FALSE(certified(wall, c, r + 2 * wall.surface->worst_face().apart));
   }

@@ -39,7 +39,8 @@ enum class Arithmetic {
 /// enlarged spheres: (ri + rj + gap - d) / (ri + rj + gap) and (clearance - r - wall_gap) / (r + wall_gap).
 ///
 /// Pairs and triangles with separate bounding boxes are not counted; all others are decided exactly, and so
-/// is every sphere against each of the other walls.
+/// is every sphere against each of the other walls. The closest pair and the sphere closest to a wall are
+/// those of all, however far apart they are.
 struct Certificate {
   bool certified = false;      ///< no overlap above the allowed, no protrusion, all radii positive and finite
   double allowed_overlap = 0;  ///< the largest overlap ratio that counted as none
@@ -56,17 +57,21 @@ struct Certificate {
   std::uint64_t overlapping_pairs = 0;   ///< overlapping by more than allowed
   std::uint64_t protruding_spheres = 0;  ///< crossing a wall or outside
 
-  /// The pair with the largest (ri + rj - d) / (ri + rj) among near pairs, the smaller index first; one index
-  /// twice for a sphere and its own image. Absent if no pair is near.
+  /// The pair with the largest (ri + rj - d) / (ri + rj) of all pairs and images, the smaller index first;
+  /// one index twice for a sphere and its own image. Absent where there is none: of fewer than two spheres,
+  /// or none in a domain that repeats itself.
   std::optional<std::array<std::uint64_t, 2>> worst_pair;
-  /// That ratio in double, with the sign of the exact decision: > 0 if and only if spheres overlap. 0 if no
-  /// pair is near.
+  /// That ratio in double, with the sign of the exact decision: > 0 if and only if spheres overlap. Off by at
+  /// most 1e-15 times 1 + |ratio|; across a period, and in a tilted box, also by some roundoffs of the period
+  /// and of the centres over ri + rj. 0 if there is no pair.
   double max_overlap = 0;
-  /// The sphere with the smallest (clearance - r) / r among spheres near a wall or outside; absent if there
-  /// are none. Outside a box or a cylinder the clearance is that of the worst face.
+  /// The sphere with the smallest (clearance - r) / r of all; absent if there are no walls, or no spheres.
+  /// Outside a box or a cylinder the clearance is that of the worst face.
   std::optional<std::uint64_t> worst_wall;
-  /// That ratio in double, with the sign of the exact decision: < 0 if and only if a sphere protrudes. 0 if
-  /// no sphere is near a wall.
+  /// That ratio in double, with the sign of the exact decision: < 0 if and only if a sphere protrudes. Off by
+  /// some roundoffs of the coordinates of centre and walls, or of the size of a triangle, over r; for the
+  /// surface of a CAD file by 1e-8, or a millionth of what a piece of it bends over r where that is more, and
+  /// by the tolerances of the file. 0 if there is none.
   double min_wall_gap = 0;
 
   /// If gaps were requested, the least distance between the surfaces of two spheres, and between a sphere and
@@ -134,7 +139,7 @@ struct CertifyOptions {
 /// differ in dimension, and invalid sizes of a domain; Error{bad_mesh} for a mesh with a boundary.
 /// Self-intersection of a mesh is not checked.
 ///
-/// Cost: O(N log N + near pairs), about 0.7 µs a sphere at N = 30,000 and 0.9 at 10,000,000 on one core, a
+/// Cost: O(N log N + near pairs), about 0.8 µs a sphere at N = 30,000 and 1 at 10,000,000 on one core, a
 /// quarter more in a periodic domain; a mesh of T triangles adds O(T log T), about 0.5 µs each. Exact
 /// arithmetic throughout is 4 to 12 times slower. In high dimensions most pairs are near, and the cost is
 /// that of all pairs. Memory besides the spheres: about 64 bytes for each sphere of the current slab, 40 for
