@@ -10,6 +10,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/measure/measure.hpp"
 #include "bernal/plan/plan.hpp"
+#include "bernal/report/describe.hpp"
 #include "bernal/report/json.hpp"
 #include "bernal/result/read_packing.hpp"
 #include "bernal/result/write_contacts.hpp"
@@ -187,9 +188,9 @@ constexpr std::size_t most_cells = 20'000'000;
 
 void print(const Packing& packing, const Measurements& measured) {
   speak_of(packing.spheres.dimension());
-  say(stdout, "spheres           {}, in a {} of {:.6g} {}\n", grouped(packing.spheres.size()),
+  say(stdout, "spheres           {}, in a {} of {:.6g} {}{}\n", grouped(packing.spheres.size()),
       name_of(packing.domain), fmt::join(bounds_of<dynamic>(packing.domain).size(), " x "),
-      name_of(packing.scene.unit));
+      name_of(packing.scene.unit), tilt_in_words(packing.domain));
   fmt::print("packing fraction  {:.6f}\n", measured.packing_fraction);
   if (measured.slab)
     fmt::print("  in the slab     {:.6f}, {}\n", measured.slab->packing_fraction,

@@ -9,6 +9,7 @@
 
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
+#include "bernal/report/describe.hpp"
 #include "scene/tilted_box.hpp"
 
 namespace bernal {
@@ -124,6 +125,15 @@ std::string edges_in_words(const std::vector<double>& edges, Unit unit) {
 /// Throws for a tilted box with an end at a wall, which would be skewed.
 void refuse_skewed_walls(const FileBox& box, const Reading& reading) {
   if (box.tilt == Tilt{} || std::ranges::find(box.ends, AxisEnd::wall) == box.ends.end()) return;
+  const bool is_of_discs = box.ends.size() == 3 && box.ends[2] == AxisEnd::wall && box.tilt[1] == 0 &&
+                           box.tilt[2] == 0 && box.ends[0] == AxisEnd::period &&
+                           box.ends[1] == AxisEnd::period;
+  if (is_of_discs)
+    reading.fail(
+        "the box is tilted and ends along its third axis, as that of discs does: give ‹dimension=2› if these "
+        "are discs, ‹periodic=xyz› if it repeats itself along that axis too, else what the spheres lie in, "
+        "by "
+        "‹box› or ‹container›");
   reading.fail(
       fmt::format("the box is tilted and does not repeat itself along every axis, and no container with "
                   "skewed walls is known; give ‹periodic={}› if it does, else what the spheres lie in, by "
@@ -168,9 +178,8 @@ ImportDomain domain_of_box(const FileBox& box, Unit unit, const std::string& why
       // 0 - x avoids -0, which would be printed.
       for (const double x : box.lower) made.shift.push_back(0 - x);
   }
-  const std::string tilt =
-      is_tilted(made.domain) ? fmt::format(", tilt {:.10g}", fmt::join(box.tilt, ", ")) : std::string();
-  made.words = fmt::format("{}, {}{}, {}", name_of(made.domain), edges_in_words(edges, unit), tilt, why);
+  made.words = fmt::format("{}, {}{}, {}", name_of(made.domain), edges_in_words(edges, unit),
+                           tilt_in_words(made.domain), why);
   return made;
 }
 

@@ -53,6 +53,20 @@ std::string caution_of_few(const Plan& plan) {
                      remedy_of(*few, plan.expected_count, plan.scene, edges));
 }
 
+/// The same of a container with walls. Of equal spheres `caution_of_guess` speaks.
+std::string caution_of_few_at_walls(const Plan& plan) {
+  const double share = error_of_few_large(plan.domain, *plan.radii);
+  const bool packs_closely = plan.expected_packing_fraction > closely * plan.attainable_packing_fraction;
+  if (!(share > 0) || !packs_closely || plan.radii->min() == plan.radii->max()) return {};
+  return fmt::format(
+      "{:.2g} of the largest {} lie across the container: how densely so few pack between walls is a matter "
+      "of "
+      "chance, and the packing fraction is expected give or take {:.2g}; a larger container or smaller sizes "
+      "pack as expected",
+      largest_across(plan.domain, *plan.radii), plan.scene.dimension() == 2 ? "discs" : "spheres",
+      share * plan.expected_packing_fraction);
+}
+
 /// "; no arrangement of equal spheres that is known has more than 0.7405", where that much is asked for.
 std::string beyond_any(const Plan& plan, double asked) {
   const int dimension = plan.scene.dimension();
@@ -73,8 +87,7 @@ std::string caution_of_target(const Plan& plan) {
       std::pow(1 - scene.overlap, dimension);  // what is left of spheres that may overlap
   const double asked = fill_task_of(plan).packing_fraction * overlapping;
   const double attainable = plan.attainable_packing_fraction;
-  if (!(asked >
-        attainable + within_reach * error_of_expectation(scene, plan.domain, *plan.radii, attainable)))
+  if (!(asked > attainable + within_reach * stated_error(scene, plan.domain, *plan.radii, attainable)))
     return {};
   return fmt::format(
       "a packing fraction of {:.3g} is asked for{}, and these sizes are expected to reach {:.3f}{}", asked,
@@ -134,8 +147,9 @@ std::string caution_of_mass(const Plan& plan) {
 
 std::string caution_of(const Plan& plan) {
   std::vector<std::string> all;
-  for (std::string caution : {caution_of_few(plan), caution_of_target(plan), caution_of_porosity(plan),
-                              caution_of_guess(plan), caution_of_size(plan), caution_of_mass(plan)})
+  for (std::string caution :
+       {caution_of_few(plan), caution_of_few_at_walls(plan), caution_of_target(plan),
+        caution_of_porosity(plan), caution_of_guess(plan), caution_of_size(plan), caution_of_mass(plan)})
     if (!caution.empty()) all.push_back(std::move(caution));
   return fmt::format("{}", fmt::join(all, "; "));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "domain/volume_below.hpp"
 #include "plan/fitting.hpp"
 #include "plan/stages.hpp"
+#include "sizes/volume_carriers.hpp"
 #include "soft/below_level.hpp"
 
 namespace bernal {
@@ -44,6 +46,8 @@ constexpr double share_in_thin_parts = 0.80;
 /// Classes of equal volume that the sizes are looked at in, and the quantiles that these are made from.
 constexpr std::size_t volume_classes = 5, quantiles = 500;
 constexpr std::size_t sample_points = 5000;
+/// Of the largest spheres across a container: with fewer it is a matter of chance how they fit.
+constexpr double enough_across = 3;
 /// How much of itself a covering sphere may lack, as the wall's nearest point is known to rounding only.
 constexpr double slack = 0.02;
 constexpr int most_moves = 8;
@@ -174,6 +178,12 @@ double reached_by_relaxation(const Domain& shape, const SizeDistribution& radii,
          std::max(0.1, 1 - wall_deficit_relaxed * wall);
 }
 
+/// See `error_between_walls`.
+double error_at(double wall_share) {
+  constexpr double share = 0.12, power = 1.5;
+  return std::min(1.0, share * std::pow(std::max(0.0, wall_share - 1), power));
+}
+
 bool reaches(const Scene& scene, Reaches what) { return any_stage(scene, &StageTraits::reaches, what); }
 
 }  // namespace
@@ -283,11 +293,31 @@ double error_of_expectation(const Scene& scene, const Domain& shape, const SizeD
                   error_between_walls(shape, radii) * expected);
 }
 
+double stated_error(const Scene& scene, const Domain& shape, const SizeDistribution& radii, double expected) {
+  return std::max(error_of_expectation(scene, shape, radii, expected),
+                  error_of_few_large(shape, radii) * expected);
+}
+
+double largest_across(const Domain& shape, const SizeDistribution& radii) {
+  const int dimension = dimension_of(shape);
+  if (dimension < 2 || dimension > 3 || !has_walls(shape)) return std::numeric_limits<double>::infinity();
+  const auto* box = std::get_if<Box>(&shape);
+  int axes = box ? 0 : dimension;
+  for (int k = 0; box && k < dimension; ++k) axes += box->has_wall(k);
+  const double diameter = 2 * volume_carriers(radii, dimension).radius;
+  return 2 * axes * volume_of(shape) / area_of(shape) / diameter;
+}
+
+double error_of_few_large(const Domain& shape, const SizeDistribution& radii) {
+  const double across = largest_across(shape, radii);
+  if (!(across < enough_across)) return 0;
+  return error_at(2 * dimension_of(shape) / across);
+}
+
 double error_between_walls(const Domain& shape, const SizeDistribution& radii) {
   const int dimension = dimension_of(shape);
   if (dimension < 2 || dimension > 3 || !has_walls(shape)) return 0;
-  constexpr double share = 0.12, power = 1.5;
-  return std::min(1.0, share * std::pow(std::max(0.0, wall_share(shape, radii) - 1), power));
+  return error_at(wall_share(shape, radii));
 }
 
 /// Compression leaves a share of close packing that falls with x = A d / V, for a wall of area A, a volume V

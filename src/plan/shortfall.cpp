@@ -36,6 +36,10 @@ constexpr double one_size = 1e-3;
 /// (Farr 2013, figure 2).
 constexpr double tested_width = 0.6;
 
+/// Of the largest spheres from wall to wall: where fewer lie, walls were found to cost more than is expected
+/// of the mean size.
+constexpr double few_at_walls = 6;
+
 double sum_of_volumes(const std::vector<double>& radii, int dimension) {
   double sum = 0;
   for (const double r : radii) sum += ball_volume(dimension, r);
@@ -109,7 +113,7 @@ double ordinarily_attainable(const Plan& plan) {
 }
 
 double error_of(const Plan& plan) {
-  return error_of_expectation(plan.scene, plan.domain, *plan.radii, plan.attainable_packing_fraction);
+  return stated_error(plan.scene, plan.domain, *plan.radii, plan.attainable_packing_fraction);
 }
 
 /// Of the volume that was asked for, what is in spheres larger than all that are there.
@@ -131,8 +135,21 @@ std::vector<std::string> causes_in_sizes(const Packing& packing, const Plan& pla
   if (const auto few = few_large(*sizes_there(packing.spheres.r), count, edges)) {
     const auto of_plan = few_large(*plan.radii, count, edges);
     causes.push_back(in_words(*few) + "; " + remedy_of(of_plan ? *of_plan : *few, count, plan.scene, edges));
+  } else if (const double across = largest_across(packing.domain, *plan.radii);
+             across < few_at_walls && plan.radii->min() < plan.radii->max()) {
+    causes.push_back(
+        fmt::format("only {:.2g} of the largest lie between the walls, which take more room from these than "
+                    "is expected of all sizes",
+                    across));
   }
   return causes;
+}
+
+/// What was said to be expected before the radii were drawn, where it is another figure.
+std::string before_the_run(const Packing& packing, double expected) {
+  const double before = packing.expected_packing_fraction;
+  if (expected < *packing.expected_of_sizes || std::abs(before - expected) < 5e-4) return {};
+  return fmt::format(" (before they were drawn {:.3f} was)", before);
 }
 
 std::string causes_of(const Packing& packing, const Plan& plan) {
@@ -177,8 +194,8 @@ std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan) 
   if (shortfall.below > error) {
     shortfall.is_loose = is_loose(shortfall.below, expected, packing.spheres.size());
     shortfall.reason = fmt::format(
-        "the packing fraction, {:.4f}, is {:.3f} below the {:.3f} to be expected of these sizes: {}", phi,
-        shortfall.below, expected, causes_of(packing, plan));
+        "the packing fraction, {:.4f}, is {:.3f} below the {:.3f} to be expected of these sizes{}: {}", phi,
+        shortfall.below, expected, before_the_run(packing, expected), causes_of(packing, plan));
     return shortfall;
   }
   if (has_walls(plan.domain)) return {};

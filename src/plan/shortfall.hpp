@@ -27,7 +27,7 @@ std::optional<double> expected_of_sizes(const Packing& packing);
 /// Holds a packing against the least of what it was to reach: `packing.expected_of_sizes`; the packing
 /// fraction that is asked for, or that the count has in the box of given size; what the stages reach of
 /// themselves, as relaxation from a loose start does; and what a start had, which relaxation may keep.
-/// Nothing where the difference is within the error of that (`error_of_expectation`), or nothing is known.
+/// Nothing where the difference is within the error of that (`stated_error`), or nothing is known.
 /// Precondition: the stages came to their end with all spheres.
 std::optional<Shortfall> shortfall_of(const Packing& packing, const Plan& plan);
 

@@ -1,5 +1,6 @@
 #include "bernal/report/describe.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -25,9 +26,9 @@ std::string describe_container(const Plan& plan) {
   if (const auto* mesh = std::get_if<MeshFile>(&plan.scene.container))
     text += fmt::format(" {}", plain_text(mesh->file.string()));
   if (plan.box_follows) text += ", as large as the packing needs";
-  return fmt::format("{}{} {:.6g} {}, {} {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
-                     fmt::join(size, " x "), unit, size.size() == 2 ? "area" : "volume",
-                     volume_of(plan.domain), unit, size.size());
+  return fmt::format("{}{} {:.6g} {}{}, {} {:.6g} {}^{}", text, plan.box_follows ? ": about" : ",",
+                     fmt::join(size, " x "), unit, tilt_in_words(plan.domain),
+                     size.size() == 2 ? "area" : "volume", volume_of(plan.domain), unit, size.size());
 }
 
 /// "lammps.data, for lammps, in m"; precondition: the output is complete.
@@ -48,15 +49,27 @@ std::string describe_parts(const Plan& plan) {
       place =
           zone.mesh ? plain_text(zone.mesh->file.string()) : fmt::format("{}", fmt::join(zone.place, ", "));
     }
-    text +=
-        fmt::format("{:<9}  {}{}: {}; {}; about {:.3g} spheres\n", is_zone ? "zone" : "the rest",
-                    classes[part.sphere_class].name, place.empty() ? "" : ", " + place,
-                    describe_target(part.plan), describe_sizes(part.plan.scene), part.plan.expected_count);
+    text += fmt::format("{:<9}  {}{}: {}; {}; {}\n", is_zone ? "zone" : "the rest",
+                        classes[part.sphere_class].name, place.empty() ? "" : ", " + place,
+                        describe_target(part.plan), describe_sizes(part.plan.scene),
+                        spheres_in_words(part.plan.expected_count));
   }
   return text;
 }
 
 }  // namespace
+
+std::string tilt_in_words(const Domain& domain) {
+  if (!is_tilted(domain)) return {};
+  const auto& [xy, xz, yz] = std::get<Box>(domain).tilt;
+  return dimension_of(domain) == 2 ? fmt::format(", tilt {:.10g}", xy)
+                                   : fmt::format(", tilt {:.10g}, {:.10g}, {:.10g}", xy, xz, yz);
+}
+
+std::string spheres_in_words(double count) {
+  const double whole = std::max(1.0, std::round(count));
+  return fmt::format("about {:.3g} sphere{}", whole, whole == 1 ? "" : "s");
+}
 
 std::string describe(const Plan& plan) {
   std::string text = fmt::format("container  {}\n", describe_container(plan));

@@ -9,6 +9,7 @@
 #include "bernal/plan/layer_shares.hpp"
 #include "bernal/report/describe.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "report/describe.hpp"
 #include "report/size_summary.hpp"
 
 namespace bernal {
@@ -99,7 +100,7 @@ std::string explain(const Plan& plan) {
         "bed        {} porosity about {:.3g}, its {} about {:.4g} {} above the lowest point\n",
         density_in_words(scene.target.bed), bed->porosity,
         scene.target.bed.top == BedTarget::Top::heap ? "tip" : "surface", bed->height, name_of(scene.unit));
-  text += fmt::format("expected   about {:.3g} spheres, packing fraction {:.3f}\n", plan.expected_count,
+  text += fmt::format("expected   {}, packing fraction {:.3f}\n", spheres_in_words(plan.expected_count),
                       plan.expected_packing_fraction);
   if (!plan.insides.empty()) {
     const std::optional<double> mass = expected_mass(plan);

@@ -35,7 +35,15 @@ std::vector<Vector<3>> ring(const Vector<3>& center, const Vector<3>& axis, doub
 
 Mesh drawable(const Box& box) {
   const Vector<3> corner = box.corner;
-  return mesh_of_box({corner, corner + Vector<3>(box.size)});
+  Mesh mesh = mesh_of_box({corner, corner + Vector<3>(box.size)});
+  if (!box.is_tilted()) return mesh;
+  const TiltedBoundary<3> cell(Vector<3>(box.size), box.tilt);
+  for (Vector<3>& p : mesh.vertices) {
+    const Vector<3> shares = (p - corner).cwiseQuotient(cell.edges);
+    p = corner;
+    for (int axis = 0; axis < 3; ++axis) p += shares[axis] * cell.cell_vector(axis);
+  }
+  return mesh;
 }
 
 Mesh drawable(const Cylinder& cylinder) {

@@ -62,7 +62,7 @@ SceneSchema basic_definitions() {
   SceneSchema direction = array_of(refers_to("component"), 3, 3);
   SceneSchema push = array_of(refers_to("component"), 2, 3);
   direction["contains"] = push["contains"] = not_zero;
-  SceneSchema axes = array_of({{"type", "integer"}, {"minimum", 0}, {"maximum", max_dimension - 1}}, 1);
+  SceneSchema axes = array_of({{"type", "integer"}, {"minimum", 0}, {"maximum", max_dimension - 1}}, 0);
   axes["uniqueItems"] = true;
   return {
       {"length", length},

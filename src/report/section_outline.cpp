@@ -73,7 +73,8 @@ std::vector<FlatLoop> cut_of(const Mesh& mesh, const SectionPlane& plane) {
 }
 
 std::vector<FlatLoop> cut_of(const Box& box, const SectionPlane& plane) {
-  return cut_of(drawable_mesh(box), plane);
+  // The brick of a tilted box is a period of it, too.
+  return cut_of(drawable_mesh(Box{box.corner, box.size, box.periodic}), plane);
 }
 
 std::vector<FlatLoop> cut_of(const Revolved& revolved, const SectionPlane& plane) {

@@ -180,9 +180,28 @@ std::vector<Vector<3>> corners_of(const Mesh& mesh, const Domain& domain, const 
   for (int k = 0; k < 3; ++k)
     if (!boundary.repeats(k)) out[k] = 0;
   std::vector<Vector<3>> corners;
+  if (boundary.is_tilted()) {  // whose corners may lie on any side of the middle
+    for (const Vector<3>& v : mesh.vertices)
+      for (int sides = 0; sides < 8; ++sides)
+        corners.push_back(v + Vector<3>(sides & 1 ? out[0] : -out[0], sides & 2 ? out[1] : -out[1],
+                                        sides & 4 ? out[2] : -out[2]));
+    return corners;
+  }
   for (const Vector<3>& v : mesh.vertices)
     corners.push_back((v.array() > middle.array()).select(v + out, v - out));
   return corners;
+}
+
+/// The images in the cell of the spheres of a tilted box.
+Spheres<dynamic> in_cell(Spheres<dynamic> spheres, const Box& box) {
+  const TiltedBoundary<3> cell(Vector<3>(box.size), box.tilt);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Vector<3> shares = cell.in_cell_vectors(Vector<3>(spheres.center(i)) - Vector<3>(box.corner));
+    Vector<3> center = spheres.center(i);
+    for (int axis = 0; axis < 3; ++axis) center -= std::floor(shares[axis]) * cell.cell_vector(axis);
+    spheres.set_center(i, center);
+  }
+  return spheres;
 }
 
 /// For more spheres in a box a corner with about `in_corner` is shown; more could not be distinguished.
@@ -192,6 +211,7 @@ constexpr std::size_t most_in_box = 2'000'000, in_corner = 200'000;
 std::pair<Spheres<dynamic>, Box> corner_of(const Spheres<dynamic>& spheres, const Box& box, double part) {
   Box corner = box;
   corner.size *= part;
+  corner.tilt = {};  // of the brick, which is a period of a tilted box, too
   Spheres<dynamic> there(3);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     bool inside = true;
@@ -202,13 +222,16 @@ std::pair<Spheres<dynamic>, Box> corner_of(const Spheres<dynamic>& spheres, cons
   return {std::move(there), std::move(corner)};
 }
 
-std::string solid_svg(const Spheres<dynamic>& spheres, const Domain& domain, std::string_view unit,
+std::string solid_svg(const Spheres<dynamic>& given, const Domain& domain, std::string_view unit,
                       const std::string& remark = {}) {
-  if (const auto* box = std::get_if<Box>(&domain); box && spheres.size() > most_in_box) {
-    const double part = std::cbrt(static_cast<double>(in_corner) / static_cast<double>(spheres.size()));
-    const auto [there, corner] = corner_of(spheres, *box, part);
+  if (const auto* box = std::get_if<Box>(&domain); box && given.size() > most_in_box) {
+    const double part = std::cbrt(static_cast<double>(in_corner) / static_cast<double>(given.size()));
+    const auto [there, corner] = corner_of(given, *box, part);
     return solid_svg(there, corner, unit, fmt::format("a corner of the box, {:.2g} of its edges", part));
   }
+  const Spheres<dynamic> moved =
+      is_tilted(domain) ? in_cell(given, std::get<Box>(domain)) : Spheres<dynamic>(3);
+  const Spheres<dynamic>& spheres = is_tilted(domain) ? moved : given;
   const Mesh mesh = drawable_mesh(domain);
   const View view(corners_of(mesh, domain, spheres), canvas_size, canvas_margin, narrowest_canvas);
   const SizeScale sizes(spheres.r);
@@ -238,12 +261,38 @@ std::string disc_svg(const Spheres<dynamic>& spheres, const Polygon& polygon, st
   return svg_of(picture, SizeScale(spheres.r), spheres.size(), unit);
 }
 
+/// Discs in a tilted box: those in its cell, images that reach into it, and faintly the parts beyond it.
+std::string tilted_disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::string_view unit) {
+  TiltedBoundary<2> cell(Vector<2>(box.size), box.tilt);
+  cell.origin = box.corner;
+  const Vector<2> a = cell.cell_vector(0), b = cell.cell_vector(1);
+  // Between opposite sides.
+  const Vector<2> heights(a[0] * b[1] / b.norm(), b[1]);
+  const Vector<2> lower(std::min(0.0, b[0]), 0), upper(a[0] + std::max(0.0, b[0]), b[1]);
+  DiscPicture picture{{}, {{{0, 0}, a, a + b, b}}, {lower, upper}};
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Vector<2> reach = Vector<2>::Constant(spheres.r[i]).cwiseQuotient(heights);
+    Vector<2> shares = cell.in_cell_vectors(Vector<2>(spheres.center(i)));
+    for (double& share : shares) share -= std::floor(share);
+    const int across = static_cast<int>(std::ceil(reach[0])), along = static_cast<int>(std::ceil(reach[1]));
+    for (int row = -along; row <= along; ++row)
+      for (int column = -across; column <= across; ++column) {
+        const Vector<2> there = shares + Vector<2>(column, row);
+        if ((there + reach).minCoeff() <= 0 || (there - reach).maxCoeff() >= 1) continue;
+        const bool sticks_out = (there - reach).minCoeff() < 0 || (there + reach).maxCoeff() > 1;
+        picture.discs.push_back({there[0] * a + there[1] * b, spheres.r[i], spheres.r[i], sticks_out});
+      }
+  }
+  return svg_of(picture, SizeScale(spheres.r), spheres.size(), unit);
+}
+
 /// Discs in a box of two dimensions: those in it, images that reach into it, and faintly the parts beyond it.
 /// For very many discs a part of the box is shown, as the key says. Precondition: two dimensions, centres in
 /// one period. Cost: O(N).
 std::string disc_svg(const Spheres<dynamic>& spheres, const Box& box, std::string_view unit) {
   const auto n = static_cast<double>(spheres.size());
   const double part = n > most_discs ? std::sqrt(most_discs / n) : 1;
+  if (box.is_tilted() && part == 1) return tilted_disc_svg(spheres, box, unit);
   const Vector<2> window = part * Vector<2>(box.size);
   DiscPicture picture{{}, {{{0, 0}, {window[0], 0}, window, {0, window[1]}}}, {Vector<2>::Zero(), window}};
   for (std::size_t i = 0; i < spheres.size(); ++i) {

@@ -83,8 +83,7 @@ Conclusion of_open_target(const Packing& packing, bool fills, StageEnd end, cons
     return {Outcome::converged,
             fmt::format("{} {} placed, as many as were expected to fit{}", counted(n), are(n), guess)};
   // What relaxation is known to reach and did not is not what was to be there.
-  const double error = std::max(least_error,
-                                error_of_expectation(plan.scene, plan.domain, *plan.radii, expected)),
+  const double error = std::max(least_error, stated_error(plan.scene, plan.domain, *plan.radii, expected)),
                one_sphere = expected / std::max(1.0, expected_count);
   if (ending.places_expected && phi < expected - std::min(error, one_sphere))
     return {phi < expected - error - one_sphere ? Outcome::full : Outcome::converged,
@@ -227,15 +226,30 @@ std::string left_out(const Packing& packing, const Supply& supply, double unit) 
   if (passed == 0) return text;
   if (supply.smallest() == supply.largest())
     return text + fmt::format("; {} of the drawn sequence found no place", grouped(passed));
-  double least = supply.largest(), most = 0;
+  const int dimension = packing.spheres.dimension();
+  double least = supply.largest(), most = 0, missing = 0, placed = 0, largest_placed = 0;
   for (std::size_t k = 0; k < passed; ++k) {
     const double r = supply.radius(supply.window()[k]);
     least = std::min(least, r);
     most = std::max(most, r);
+    missing += std::pow(r - coat, dimension);
   }
-  return text + fmt::format("; {} of the drawn sequence found no place and {} passed over: {}{}",
-                            grouped(passed), passed == 1 ? "was" : "were", size(most),
-                            least < most ? fmt::format(" down to {:.4g}", shown * (least - coat)) : "");
+  for (const double r : packing.spheres.r) {
+    const double drawn = r / (unit * packing.size_scale);
+    placed += std::pow(drawn, dimension);
+    largest_placed = std::max(largest_placed, drawn);
+  }
+  text += fmt::format("; {} of the drawn sequence found no place and {} passed over: {}{}", grouped(passed),
+                      passed == 1 ? "was" : "were", size(most),
+                      least < most ? fmt::format(" down to {:.4g}", shown * (least - coat)) : "");
+  constexpr double worth_saying = 0.01, same_size = 1 - 1e-6;
+  const double share = missing / (missing + placed);
+  if (share < worth_saying) return text;
+  text += fmt::format("; {:.0f} % of the volume drawn is missing with {}", 100 * share,
+                      passed == 1 ? "it" : "them");
+  if (largest_placed < same_size * (most - coat))
+    text += fmt::format(", and nothing above {} is placed", size(largest_placed + coat));
+  return text;
 }
 
 }  // namespace

@@ -78,9 +78,10 @@ bool are_lines(const Value& value) {
 }
 bool is_line(const Value& value) { return are_lines(value) && std::get<Polygon>(value).loops.size() == 1; }
 bool are_axes(const Value& value) {
-  if (!all<is_axis>(value)) return false;
-  const auto& axes = std::get<std::vector<double>>(value);
-  return std::ranges::all_of(axes, [&](double axis) { return std::ranges::count(axes, axis) == 1; });
+  const auto* axes = std::get_if<std::vector<double>>(&value);
+  return axes && std::ranges::all_of(*axes, [&](double axis) {
+           return is_axis(axis) && std::ranges::count(*axes, axis) == 1;
+         });
 }
 bool are_names(const Value& value) {
   const auto* names = std::get_if<std::vector<std::string>>(&value);

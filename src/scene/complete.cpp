@@ -71,11 +71,12 @@ void check_target(const Scene& scene) {
         "the height of a bed in [spheres] says how many spheres there are: leave \"count\", "
         "\"packing_fraction\" and \"fill\" out");
   if (target.has_count() && target.has_packing_fraction() && !scalable)
-    fail(
-        target.mass
-            ? "\"mass\" and a packing fraction in [spheres] exclude each other; give one of them"
-            : "\"count\" and \"packing_fraction\" in [spheres] exclude each other; give one of them (both go "
-              "together only in a periodic box without size)");
+    fail(target.mass ? "\"mass\" and a packing fraction in [spheres] exclude each other; give one of them"
+                     : "\"count\" and \"packing_fraction\" in [spheres] exclude each other, as the sizes are "
+                       "given too: "
+                       "give one of them, and let \"scale\" make the sizes what meets the other (both go "
+                       "together only "
+                       "in a periodic box without size)");
   if (scalable && !target.has_count() && !all_are_there)
     fail("a periodic box without size needs a \"count\" in [spheres]; or give it \"size\" or \"edge\"");
 }

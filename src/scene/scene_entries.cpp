@@ -251,7 +251,7 @@ const std::vector<Entry>& container_entries() {
                         "dimensions xy"),
                     key(Type::axes, &PeriodicBox::walls, "walls",
                         "axes, counted from 0, along which the box does not repeat itself but ends at walls, "
-                        "with whole spheres between them"),
+                        "with whole spheres between them; [] for none"),
                     flag(&PeriodicBox::scalable, "scalable",
                          "the packing decides how large the box is; size only gives its proportions")},
            .choices = {{{"size"}, {"edge"}, {}}},

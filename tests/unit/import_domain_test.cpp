@@ -35,6 +35,25 @@ std::string note_of(const ImportedPacking& imported, const std::string& about) {
   return "";
 }
 
+// Discs of a tilted box, as export writes them, with a third axis that ends.
+TEST(ImportDomain, OfDiscsInATiltedBoxTheRemedyIsNamed) {
+  const std::string discs =
+      "2\nLattice=\"20 0 0 6 18 0 0 0 2\" pbc=\"T T F\" Properties=pos:R:3:radius:R:1 unit=m\n"
+      "4 5 1 1\n9 9 1 1\n";
+  const Folder folder;
+  const auto file = folder.write("a.xyz", discs);
+  try {
+    import_packing(file, {});
+    FAIL() << "taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("‹dimension=2›"), std::string::npos) << error.what();
+  }
+  const ImportedPacking flat = import_packing(file, {.dimension = 2});
+  EXPECT_EQ(std::get<Box>(flat.packing.domain).tilt, (Tilt{6, 0, 0}));
+  EXPECT_NE(note_of(flat, "domain").find("20 x 18 m, tilt 6, as"), std::string::npos)
+      << note_of(flat, "domain");
+}
+
 // Walls at the bounds are rounded outwards: no sphere protrudes by a last bit, and none lies far from them.
 TEST(ImportDomain, TheBoundsOfTheSpheresHoldThemExactly) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {

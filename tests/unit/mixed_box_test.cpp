@@ -98,6 +98,13 @@ TEST(MixedBox, ComesFromASceneAndGoesIntoIt) {
     EXPECT_EQ(std::get<Box>(domain).periodic, (std::vector<bool>{false, true, false}));
 }
 
+TEST(MixedBox, OfNoWallsIsAPeriodicBox) {
+  const Scene scene = parse_scene(
+      "[container]\nkind = \"periodic\"\nsize = [1, 2, 3]\nwalls = []\n[spheres]\ncount = 3\nradius = 0.1\n",
+      "test.toml");
+  EXPECT_EQ(name_of(domain_of(scene)), "periodic box");
+}
+
 TEST(MixedBox, IsRefusedByWhatDoesNotKnowWalls) {
   const auto message = [](const std::string& stage) -> std::string {
     try {

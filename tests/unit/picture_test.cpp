@@ -106,6 +106,41 @@ TEST(Picture, OutlinesOfABoxAreItsTwelveEdges) {
   EXPECT_NEAR(hidden / shown, 1.0 / 3.0, 0.01);
 }
 
+TEST(Picture, OfATiltedBoxIsThatOfItsCell) {
+  const Box tilted = periodic_box(Vector<3>(10, 8, 6), {}, {4, -3, 2});
+  const Mesh mesh = drawable_mesh(tilted);
+  EXPECT_NEAR(volume_of(Domain(mesh)), 480, 1e-9);
+  const Vector<3> far_end(10 + 4 - 3, 8 + 2, 6);
+  EXPECT_TRUE(
+      std::ranges::any_of(mesh.vertices, [&](const Vector<3>& v) { return (v - far_end).norm() < 1e-12; }));
+  // A sphere of the brick that lies outside of the cell is drawn where its image in the cell lies.
+  Spheres<dynamic> in_brick(3), in_cell(3);
+  in_brick.push_back(Vector<3>(1, 7, 0.5), 0.5);
+  in_cell.push_back(Vector<3>(11, 7, 0.5), 0.5);
+  const auto at = painted(svg_of(in_brick, tilted, "mm")), there = painted(svg_of(in_cell, tilted, "mm"));
+  ASSERT_EQ(at.size(), 1u);
+  EXPECT_EQ(at[0].x, there.at(0).x);
+  EXPECT_EQ(at[0].y, there.at(0).y);
+}
+
+TEST(Picture, ShowsDiscsInTheCellOfATiltedBox) {
+  const Box tilted = periodic_box(Vector<2>(10, 8), {}, {4, 0, 0});
+  Spheres<2> discs;
+  discs.push_back({7, 4}, 1);      // in the middle
+  discs.push_back({0.5, 7.9}, 1);  // at the upper side, left of the cell: its images at both sides
+  const std::string svg = svg_of(discs, tilted, "mm");
+  const std::string clipped = svg.substr(svg.find("clip-path="));
+  EXPECT_EQ(painted(clipped).size(), 1u + 2);
+  // Of the outline's four corners none is above another, as in the brick.
+  static const std::regex corner("[ML]([0-9.]+) ([0-9.]+)");
+  const std::string path = svg.substr(svg.find(" d=\"") + 4, 200);
+  std::vector<double> x;
+  for (std::sregex_iterator it(path.begin(), path.end(), corner), end; it != end && x.size() < 4; ++it)
+    x.push_back(std::stod((*it)[1]));
+  ASSERT_EQ(x.size(), 4u);
+  EXPECT_NEAR((x[3] - x[0]) / (x[1] - x[0]), 0.4, 1e-3);
+}
+
 TEST(Picture, EveryContainerIsClosedAndSeenFromOutside) {
   for (const Domain& shape :
        {Domain(box), Domain(Cylinder{{1, 2, 3}, {1, 1, 2}, 2, 7}), Domain(Sphere{{5, 5, 5}, 3})}) {

@@ -171,5 +171,28 @@ TEST(Shortfall, SaysWhy) {
   EXPECT_NE(wide->reason.find("deviation of 1.00 by volume"), std::string::npos) << wide->reason;
 }
 
+// Where few of the largest lie between walls, these are the cause, and not that sizes are wide.
+TEST(Shortfall, BetweenWallsNamesFewLargeSpheres) {
+  const std::string wide =
+      "diameter = { distribution = \"classes\", values = [1, 10], shares = [25, 75], basis = \"volume\" }";
+  const auto few = shortfall_at(0.5, plan_of("count = 30000\n" + wide, "", "walls = [0, 1, 2]"));
+  ASSERT_TRUE(few);
+  EXPECT_NE(few->reason.find("of the largest lie between the walls"), std::string::npos) << few->reason;
+  EXPECT_EQ(few->reason.find("deviation"), std::string::npos) << few->reason;
+  const auto many = shortfall_at(0.5, plan_of("count = 10000000\n" + wide, "", "walls = [0, 1, 2]"));
+  ASSERT_TRUE(many);
+  EXPECT_EQ(many->reason.find("of the largest lie between the walls"), std::string::npos) << many->reason;
+}
+
+// The figure that was said before the radii were drawn is told beside that of the radii.
+TEST(Shortfall, TellsBothExpectationsWhereTheyDiffer) {
+  const Plan plan = plan_of("count = 3000\nradius = 1");
+  Packing packing = packed_to(0.55, plan);
+  EXPECT_EQ(shortfall_of(packing, plan)->reason.find("before they were drawn"), std::string::npos);
+  packing.expected_packing_fraction += 0.005;
+  EXPECT_NE(shortfall_of(packing, plan)->reason.find("(before they were drawn 0.648 was)"), std::string::npos)
+      << shortfall_of(packing, plan)->reason;
+}
+
 }  // namespace shortfall_test
 }  // namespace bernal

@@ -13,6 +13,9 @@ std::string describe(const Plan& plan);
 /// stages, the default ones are listed at the end with all their options.
 std::string explain(const Plan& plan);
 
+/// Of a tilted periodic box ", tilt 6, 0, -1.5", in two dimensions ", tilt 6"; of others nothing.
+std::string tilt_in_words(const Domain&);
+
 /// What a scene asks of the cells of its packing, beside what they are.
 std::string cells_in_words(const PackedCells&);
 
