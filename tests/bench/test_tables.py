@@ -140,8 +140,8 @@ class World(unittest.TestCase):
         ended = subprocess.run([sys.executable, HERE.parent / "validation/world", "--quick", "--bernal", COMMAND], capture_output=True, text=True)
         self.assertEqual(ended.returncode, 0, ended.stderr)
         lines = ended.stdout.splitlines()
-        self.assertEqual({line.split(":")[0] for line in lines},
-                         {"equal", "growth", "finney", "pebbles", "polydispersity", "exchange", "four sizes", "columns", "records"})
+        self.assertEqual({line.split(":")[0] for line in lines}, {"equal", "growth", "finney", "pebbles", "polydispersity", "exchange",
+                                                                  "four sizes", "farr", "columns", "records"})
         self.assertIn("pebbles: overlapping pairs among 67 pebbles: 63, published 63, holds", lines)
 
 
