@@ -47,7 +47,7 @@ constexpr double share_in_thin_parts = 0.80;
 constexpr std::size_t volume_classes = 5, quantiles = 500;
 constexpr std::size_t sample_points = 5000;
 /// Of the largest spheres across a container: with fewer it is a matter of chance how they fit.
-constexpr double enough_across = 3;
+constexpr double chance_below = 3;
 /// How much of itself a covering sphere may lack, as the wall's nearest point is known to rounding only.
 constexpr double slack = 0.02;
 constexpr int most_moves = 8;
@@ -310,7 +310,7 @@ double largest_across(const Domain& shape, const SizeDistribution& radii) {
 
 double error_of_few_large(const Domain& shape, const SizeDistribution& radii) {
   const double across = largest_across(shape, radii);
-  if (!(across < enough_across)) return 0;
+  if (!(across < chance_below)) return 0;
   return error_at(2 * dimension_of(shape) / across);
 }
 
