@@ -146,7 +146,7 @@ inline double margin_of(const Domain& domain) {
 }
 /// How many independent motions, shifts and turns, take the domain into itself for as far as they go: a shift
 /// along each axis that repeats itself, a turn about the axis of a cylinder or of a profile, three about a
-/// sphere's centre. A mesh or a polygon has none.
+/// sphere's centre. A polygon has none, a mesh shifts along which it is the same everywhere.
 int symmetries_of(const Domain&);
 
 /// Smallest axis-aligned bounds, to rounding; along an axis that repeats itself, one period, and of a tilted
