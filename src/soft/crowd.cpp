@@ -116,8 +116,9 @@ StageEnd Crowd<Ground>::settle(Settling& so_far, const std::function<bool()>& st
 }
 
 template <class Ground>
-double Crowd<Ground>::exchange(SizeExchange& sizes, double step) {
-  ground_.engine().exchange(sizes.deal(ground_.engine().forces(), step));
+double Crowd<Ground>::exchange(SizeExchange& sizes, double done) {
+  if (sizes.widen(widening(done))) ground_.engine().resize(sizes.radii());
+  ground_.engine().exchange(sizes.deal(ground_.engine().forces(), exchange_step(done)));
   for (int k = 1; k < sweeps_an_exchange; ++k) ground_.engine().sweep(over_relaxation(pace_for(0)));
   sweeps_ += sweeps_an_exchange - 1;
   measure();

@@ -59,8 +59,9 @@ class Crowd {
   /// `is_over` says so.
   StageEnd relax(const Stirring& how, const Monitor& monitor, Random& random);
 
-  /// Exchanges sizes once, by steps of this length, and sweeps. Returns `energy_of` the spheres.
-  double exchange(SizeExchange& sizes, double step);
+  /// Exchanges sizes once, when the share `done` of all exchanges is over, and sweeps. Returns `energy_of`
+  /// the spheres.
+  double exchange(SizeExchange& sizes, double done);
 
   /// Sweeps with larger radii for a while and then goes back to the former: this shakes stuck spheres loose.
   void burst();

@@ -47,11 +47,15 @@ std::optional<double> exchange_in_box(Spheres<D>& spheres, Vector<D>& edges, boo
   }
   for (; k < exchanges && !report.stop(); ++k) {
     const double done = static_cast<double>(k) / exchanges;
+    if (sizes.widen(widening(done))) engine.resize(sizes.radii());
     engine.exchange(sizes.deal(engine.forces(), exchange_step(done)));
     sweep(sweeps_an_exchange);
-    if (energy_of(engine.squeeze()) < crowding) {
+    const double energy = energy_of(engine.squeeze());
+    if (energy < crowding) {
       compress(compression);
       sweep(sweeps_an_exchange);
+    } else if (sizes.is_widened() && energy > too_crowded * crowding) {
+      compress(1 / compression);
     }
     if (k % exchanges_a_milestone == 0) {
       in_box.edges = edges * (edge / edges.minCoeff());

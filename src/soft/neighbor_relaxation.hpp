@@ -50,6 +50,8 @@ class NeighborRelaxation {
   std::vector<float> forces() const { return by_id(force_); }
   /// Sphere to[i] takes the place of sphere i: `to` is a permutation. Cost: O(N).
   void exchange(const std::vector<std::uint32_t>& to);
+  /// As `SoftPacking::resize`.
+  void resize(const std::vector<float>& radii);
 
   /// Multiplies the box and all distances; radii stay.
   void grow(double factor);

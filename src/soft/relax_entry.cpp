@@ -47,7 +47,7 @@ double gain_of_relaxation(const Relax& options, const SizeDistribution& radii, i
   constexpr int sizes = 1000;
   std::vector<double> some;
   for (int k = 0; k < sizes; ++k) some.push_back(radii.quantile((k + 0.5) / sizes));
-  return gain_by_exchange(SizeExchange(some, dimension).spread(), has_walls);
+  return SizeExchange(some, dimension).gain(has_walls);
 }
 
 }  // namespace

@@ -52,10 +52,8 @@ class Relaxation {
         options_(options),
         random_(report.random(Stream::relax)),
         skin_(in_bed.bed().skin() > thin_skin * in_bed.supply->smallest() ? in_bed.bed().skin() : 0),
-        gain_(options.exchange
-                  ? gain_by_exchange(SizeExchange(in_bed.supply->radii(), in_bed.bed().dimension()).spread(),
-                                     true)
-                  : 1),
+        gain_(options.exchange ? SizeExchange(in_bed.supply->radii(), in_bed.bed().dimension()).gain(true)
+                               : 1),
         snug_(SnugPlaces(in_bed, report).all_touch()),
         wide_(!pours && in_bed.bed().dimension() == 3 && is_for_wide_sizes(in_bed.task.fill_task, options)),
         crowd_(ContainerGround(in_bed.bed().container(), in_bed.bed().places(), snug_, wide_),
@@ -255,10 +253,13 @@ class Relaxation {
     int k = 0;
     const Resumable part(report_, "crowding", [&](Archive& a) { a(k, crowd_); });
     SizeExchange sizes(crowd_.spheres().r, in_bed_.bed().dimension());
-    for (; k < exchanges && !(crowd_.is_free() && crowd_.size() == target_count_); ++k) {
+    const auto is_done = [&] {
+      return crowd_.is_free() && !sizes.is_widened() && crowd_.size() == target_count_;
+    };
+    for (; k < exchanges && !is_done(); ++k) {
       if (exchange_is_over()) return;
       const double done = static_cast<double>(k) / exchanges;
-      const double energy = crowd_.exchange(sizes, exchange_step(done));
+      const double energy = crowd_.exchange(sizes, done);
       if (energy < crowding && crowd_.size() < target_count_) {
         if (!add(count_of_more(compression - 1))) return;
         sizes = SizeExchange(crowd_.spheres().r, in_bed_.bed().dimension());
@@ -275,7 +276,7 @@ class Relaxation {
     SizeExchange sizes(crowd_.spheres().r, in_bed_.bed().dimension());
     for (; k < exchanges_to_settle && !crowd_.is_free(); ++k) {
       if (exchange_is_over()) return false;
-      crowd_.exchange(sizes, exchange_step(1));
+      crowd_.exchange(sizes, 1);
     }
     const StageEnd end = crowd_.settle(report_.monitor, [this] { tell(); });
     cancelled_ = end == StageEnd::cancelled;

@@ -16,22 +16,13 @@ constexpr float most_excess = 3;
 constexpr double first_step = 0.012, last_step = 0.1 * first_step, share_of_long_steps = 0.3;
 constexpr int bits_a_pass = 11, passes = 3;
 constexpr double most_gain = 0.07, most_gain_at_walls = 0.105, spread_of_gain = 0.045;
-
-/// The variance of ln r within groups; a group ends where the next size is out of reach.
-double variance_of_groups(const std::vector<double>& radii, const std::vector<std::uint32_t>& ascending) {
-  double sum = 0, mean = 0, squares = 0, members = 0;  // of the present group: Welford
-  for (std::size_t k = 0; k < ascending.size(); ++k) {
-    const double x = std::log(radii[ascending[k]]);
-    if (k > 0 && x - std::log(radii[ascending[k - 1]]) >= SizeExchange::longest_way) {
-      sum += squares;
-      mean = squares = members = 0;
-    }
-    const double away = x - mean;
-    mean += away / ++members;
-    squares += away * (x - mean);
-  }
-  return radii.empty() ? 0 : (sum + squares) / static_cast<double>(radii.size());
-}
+/// Of the classes on both sides of a gap what takes other sizes. From 0.25 to 0.5 it makes no difference.
+constexpr double widened_part = 0.35;
+/// Fewer spheres are no class.
+constexpr std::size_t fewest_of_class = 6;
+/// The share of the way after which classes are as wide as they become, and those at which they begin to be
+/// narrowed and end.
+constexpr double wide_from = 0.05, narrower_from = 0.3, narrow_from = 0.9;
 
 /// Maps floats to unsigned numbers in the same order.
 std::uint32_t ordered(float value) {
@@ -42,12 +33,71 @@ std::uint32_t ordered(float value) {
 }  // namespace
 
 SizeExchange::SizeExchange(const std::vector<double>& radii, int dimension)
-    : ascending_(smallest_first(radii)) {
+    : dimension_(dimension), given_(radii.begin(), radii.end()), ascending_(smallest_first(radii)) {
   for (const double r : radii) {
-    log_radii_.push_back(static_cast<float>(std::log(r)));
+    given_logs_.push_back(static_cast<float>(std::log(r)));
     inverse_areas_.push_back(static_cast<float>(std::pow(r, 1 - dimension)));
   }
-  spread_ = std::sqrt(variance_of_groups(radii, ascending_));
+  radii_ = given_;
+  log_radii_ = given_logs_;
+  find_classes();
+}
+
+/// Classes begin at gaps that no exchange crosses. What a widening closes lessens the gain in proportion to
+/// its share of the way from the smallest size to the largest. The variance is that of ln r within what
+/// exchanges can reach (Welford).
+void SizeExchange::find_classes() {
+  const std::size_t n = ascending_.size();
+  if (n == 0) return;
+  std::vector<std::size_t> begins;
+  for (std::size_t k = 0; k < n; ++k)
+    if (k == 0 || log_at(k) - log_at(k - 1) >= longest_way) begins.push_back(k);
+  begins.push_back(n);
+  double lost = 0, way = 0, sum = 0, mean = 0, squares = 0, members = 0;
+  for (std::size_t c = 0; c + 1 < begins.size(); ++c) {
+    if (c > 0) {
+      const std::size_t at = begins[c], fewer = std::min(at - begins[c - 1], begins[c + 1] - at);
+      const double gap = log_at(at) - log_at(at - 1);
+      if (gap <= farthest && fewer >= fewest_of_class) {
+        const auto part = static_cast<std::size_t>(widened_part * static_cast<double>(fewer));
+        bridges_.push_back({at - part, at + part});
+        lost += gap * gap / farthest;
+        way += gap;
+      } else {
+        sum += squares;
+        mean = squares = members = 0;
+      }
+    }
+    way += log_at(begins[c + 1] - 1) - log_at(begins[c]);
+    for (std::size_t k = begins[c]; k < begins[c + 1]; ++k) {
+      const double away = log_at(k) - mean;
+      mean += away / ++members;
+      squares += away * (log_at(k) - mean);
+    }
+  }
+  spread_ = std::sqrt((sum + squares) / static_cast<double>(n));
+  if (way > 0) ease_ = 1 - lost / way;
+}
+
+void SizeExchange::set(std::uint32_t sphere, float log_radius) {
+  log_radii_[sphere] = log_radius;
+  radii_[sphere] = std::exp(log_radius);
+  inverse_areas_[sphere] = std::exp(static_cast<float>(1 - dimension_) * log_radius);
+}
+
+bool SizeExchange::widen(double share) {
+  if (bridges_.empty() || share == share_) return false;
+  share_ = share;
+  for (const Bridge& bridge : bridges_) {
+    const double low = log_at(bridge.first), high = log_at(bridge.last - 1);
+    const double step = (high - low) / static_cast<double>(bridge.last - 1 - bridge.first);
+    for (std::size_t k = bridge.first; k < bridge.last; ++k) {
+      const double on_line = low + step * static_cast<double>(k - bridge.first);
+      set(ascending_[k], static_cast<float>((1 - share) * log_at(k) + share * on_line));
+    }
+  }
+  if (share == 0) radii_ = given_;
+  return true;
 }
 
 /// By radius, and by sphere where radii are equal: a radix sort.
@@ -84,14 +134,21 @@ const std::vector<std::uint32_t>& SizeExchange::deal(const std::vector<float>& f
   return to_;
 }
 
-double gain_by_exchange(double spread, bool has_walls) {
-  return 1 + (has_walls ? most_gain_at_walls : most_gain) * (1 - std::exp(-spread / spread_of_gain));
+double SizeExchange::gain(bool has_walls) const {
+  return 1 + (has_walls ? most_gain_at_walls : most_gain) * ease_ * (1 - std::exp(-spread_ / spread_of_gain));
 }
 
 double exchange_step(double done) {
   if (done < share_of_long_steps) return first_step;
   return first_step *
          std::pow(last_step / first_step, (done - share_of_long_steps) / (1 - share_of_long_steps));
+}
+
+double widening(double done) {
+  constexpr double parts = 600;  // so many changes, not one for each exchange
+  done = std::floor(parts * done) / parts;
+  return std::min(done / wide_from,
+                  std::clamp((narrow_from - done) / (narrow_from - narrower_from), 0.0, 1.0));
 }
 
 double energy_of(const std::vector<float>& squeeze) {

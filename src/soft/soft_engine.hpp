@@ -45,6 +45,9 @@ class SoftEngine {
   void exchange(const std::vector<std::uint32_t>& to) {
     std::visit([&](auto& engine) { engine.exchange(to); }, engine_);
   }
+  void resize(const std::vector<float>& radii) {
+    std::visit([&](auto& engine) { engine.resize(radii); }, engine_);
+  }
   void grow(double factor) {
     std::visit([&](auto& engine) { engine.grow(factor); }, engine_);
   }

@@ -203,6 +203,15 @@ std::vector<float> SoftPacking::by_id(const std::vector<float>& in_sweep_order) 
 
 void SoftPacking::exchange(const std::vector<std::uint32_t>& to) {
   for (std::uint32_t& id : id_of_site_) id = to[id];
+  take_radii();
+}
+
+void SoftPacking::resize(const std::vector<float>& radii) {
+  radii_ = radii;
+  take_radii();
+}
+
+void SoftPacking::take_radii() {
   float most = 0;
   for (std::size_t p = 0; p < spheres_.size(); ++p) {
     if (!(spheres_[p].r > 0)) continue;

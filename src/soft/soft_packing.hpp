@@ -89,6 +89,9 @@ class SoftPacking {
   std::vector<float> forces() const { return by_id(force_); }
   /// Sphere to[i] takes the place of sphere i. `to` is a permutation. Cost: O(N).
   void exchange(const std::vector<std::uint32_t>& to);
+  /// Gives the spheres other radii than those that were given, none larger than the largest of these. Cost:
+  /// O(N).
+  void resize(const std::vector<float>& radii);
 
   /// Multiplies the box and all distances; radii stay.
   void grow(double factor);
@@ -131,6 +134,7 @@ class SoftPacking {
   unsigned narrow_axes() const;
   void stop_at_walls(SoftSphere& sphere) const;
   float move_all(float omega, bool measure, bool each);
+  void take_radii();
   double measure(float omega, bool each);
   template <int D>
   void set_place(SoftSphere& sphere, const Vector<D>& center) const;

@@ -28,6 +28,13 @@ std::vector<double> lognormal_radii(std::size_t n, double sigma) {
   return radii;
 }
 
+/// So many of each.
+std::vector<double> of_classes(const std::vector<double>& classes, std::size_t n) {
+  std::vector<double> radii;
+  for (const double r : classes) radii.insert(radii.end(), n, r);
+  return radii;
+}
+
 std::vector<float> random_forces(std::size_t n) {
   Random random(4, stream(Stream::test));
   std::vector<float> forces;
@@ -87,6 +94,65 @@ TEST(SizeExchange, IsOfUseWhereSizesComeCloseToEachOther) {
   EXPECT_FALSE(SizeExchange({1.0}, 3).is_of_use());
   EXPECT_FALSE(SizeExchange({}, 3).is_of_use());
   EXPECT_TRUE(SizeExchange({1.0, 1.4, 1.42}, 3).is_of_use());
+  EXPECT_TRUE(SizeExchange(of_classes({1.0, 1.2}, 6), 3).is_of_use());
+  EXPECT_FALSE(SizeExchange(of_classes({1.0, 1.2}, 5), 3).is_of_use()) << "so few are no class";
+  EXPECT_FALSE(SizeExchange(of_classes({1.0, 1.26}, 100), 3).is_of_use());
+}
+
+TEST(SizeExchange, WidensClassesUntilStepsCrossTheGaps) {
+  const std::vector<double> given = of_classes({1.0, 1.1, 1.3, 2.0}, 100);
+  const std::vector<float> as_given(given.begin(), given.end());
+  SizeExchange exchange(given, 3);
+  EXPECT_TRUE(exchange.widen(0)) << "engines may have had others";
+  EXPECT_EQ(exchange.radii(), as_given);
+  EXPECT_FALSE(exchange.widen(0));
+  double widest_before = std::log(1.3 / 1.1);
+  for (const double share : {0.3, 0.7, 1.0}) {
+    SCOPED_TRACE(share);
+    ASSERT_TRUE(exchange.widen(share));
+    EXPECT_TRUE(exchange.is_widened());
+    const std::vector<float>& radii = exchange.radii();
+    double widest = 0;
+    for (std::size_t i = 1; i < 300; ++i) {
+      EXPECT_GE(radii[i], radii[i - 1] * (1 - 1e-6f)) << i;
+      widest = std::max(widest, std::log(static_cast<double>(radii[i]) / radii[i - 1]));
+    }
+    EXPECT_NEAR(widest, (1 - share) * std::log(1.3 / 1.1) + share * std::log(1.3 / 1.1) / 69, 1e-5);
+    EXPECT_LT(widest, widest_before);
+    widest_before = widest;
+    for (std::size_t i = 300; i < 400; ++i) EXPECT_EQ(radii[i], 2.0f) << "too far from the others";
+    EXPECT_EQ(radii.front(), 1.0f);
+  }
+  EXPECT_LT(widest_before, SizeExchange::longest_way);
+  EXPECT_TRUE(exchange.widen(0));
+  EXPECT_EQ(exchange.radii(), as_given) << "to the bit";
+  EXPECT_FALSE(exchange.is_widened());
+}
+
+TEST(SizeExchange, LeavesSizesWithoutGapsAsTheyAre) {
+  SizeExchange exchange(lognormal_radii(500, 0.3), 3);
+  EXPECT_FALSE(exchange.widen(1));
+  EXPECT_FALSE(exchange.is_widened());
+}
+
+TEST(SizeExchange, ExpectsLessTheFartherClassesAreApart) {
+  double before = SizeExchange(lognormal_radii(600, 0.1), 3).gain(false);
+  for (const double ratio : {1.05, 1.1, 1.2, 1.25}) {
+    SCOPED_TRACE(ratio);
+    const double gain =
+        SizeExchange(of_classes({1.0, ratio, ratio * ratio, std::pow(ratio, 3)}, 150), 3).gain(false);
+    EXPECT_GT(gain, 1);
+    EXPECT_LT(gain, before);
+    before = gain;
+  }
+  EXPECT_EQ(SizeExchange(of_classes({1.0, 1.5}, 150), 3).gain(false), 1);
+}
+
+TEST(SizeExchange, HasEveryClassAsItIsAtTheEnd) {
+  EXPECT_EQ(widening(0), 0);
+  EXPECT_EQ(widening(0.2), 1);
+  for (const double done : {0.9, 0.95, 1.0}) EXPECT_EQ(widening(done), 0);
+  for (double done = 0.3; done < 0.9; done += 0.01) EXPECT_LE(widening(done + 0.01), widening(done));
 }
 
 /// What an engine knows after an exchange is what a fresh one finds that is given the spheres that way.
@@ -117,6 +183,33 @@ TEST(SoftEngine, ExchangesInEveryKindOfBox) {
   expect_exchanged<2>(Vector<2>(1, 1.2), 0.05);
   expect_exchanged<3>(Vector<3>(1, 1.2, 0.3), 0.08);  // several images
   expect_exchanged<4>(Vector<4>(1, 1, 1, 1), 0.15);
+}
+
+/// What an engine knows of spheres that it resizes is what a fresh one finds that is given these radii.
+template <int D>
+void expect_resized(const Vector<D>& edges, double r_max) {
+  Spheres<D> spheres = testing::ideal_gas<D>(300, 0.6 * r_max, r_max, edges, 5);
+  SoftEngine<D> engine(spheres, edges);
+  engine.sweep_and_measure(0);
+  std::vector<float> radii;
+  for (double& r : spheres.r) {
+    r = std::min(0.9 * r_max, 1.05 * r);
+    radii.push_back(static_cast<float>(r));
+  }
+  engine.resize(radii);
+  const double largest = engine.sweep_and_measure(0);
+  const std::vector<float> forces = engine.forces();
+  SoftEngine<D> fresh(spheres, edges);
+  EXPECT_NEAR(largest, fresh.sweep_and_measure(0), 2e-6);
+  const std::vector<float> expected = fresh.forces();
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    EXPECT_NEAR(forces[i], expected[i], 1e-4 * r_max * r_max) << i;
+}
+
+TEST(SoftEngine, ResizesInEveryKindOfBox) {
+  expect_resized<3>(Vector<3>(1, 1.2, 0.9), 0.08);
+  expect_resized<2>(Vector<2>(1, 1.2), 0.05);
+  expect_resized<4>(Vector<4>(1, 1, 1, 1), 0.15);
 }
 
 TEST(SoftPacking, FindsTheForcesOfAllPairs) {
@@ -188,6 +281,23 @@ TEST(Exchange, MakesDenserPackingsOfTheSameSizes) {
     EXPECT_NE(exchanged.reason.find("exchange of sizes"), std::string::npos) << exchanged.reason;
     EXPECT_EQ(exchanged.spheres.r, ordinary.spheres.r) << "to the bit";
     EXPECT_GT(exchanged.packing_fraction(), ordinary.packing_fraction() + gain);
+  }
+}
+
+/// Nine classes of a sieve curve, each 8 % larger than the one before.
+const std::string sieved =
+    "{ distribution = \"classes\", values = [1, 1.08, 1.17, 1.26, 1.36, 1.47, 1.59, 1.71, 1.85], "
+    "shares = [1, 2, 3, 4, 5, 4, 3, 2, 1] }";
+
+TEST(Exchange, MakesDenserPackingsOfClasses) {
+  // Measured with five seeds each: at least 0.016, 0.012 and 0.013.
+  for (const std::string box : {"dimension = 2", "dimension = 3", "walls = [2]"}) {
+    SCOPED_TRACE(box);
+    const Packing ordinary = run(testing::plan_of(scene_of(box, 250, sieved, "")));
+    const Packing exchanged = run(testing::plan_of(scene_of(box, 250, sieved, "exchange = true")));
+    EXPECT_EQ(exchanged.outcome, Outcome::converged) << exchanged.reason;
+    EXPECT_EQ(exchanged.spheres.r, ordinary.spheres.r) << "to the bit";
+    EXPECT_GT(exchanged.packing_fraction(), ordinary.packing_fraction() + 0.01);
   }
 }
 
