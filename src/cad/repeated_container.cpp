@@ -49,7 +49,7 @@ class RepeatedContainer final : public Container {
     if (reach > cover_) return far_facets_near(at, c - at, reach, most, out);
     const std::size_t before = out.size();
     if (!around_->few_facets_near(at, reach, most, out)) return false;
-    move(out, before, c - at);
+    move(out, before, c - at, c);
     return true;
   }
 
@@ -76,10 +76,19 @@ class RepeatedContainer final : public Container {
  private:
   Vector<3> home(const Vector<3>& p) const { return boundary().wrap(p); }
 
-  static void move(std::vector<NearFacet>& facets, std::size_t from, const Vector<3>& by) {
+  /// Of facets that were found around c - by.
+  static void move(std::vector<NearFacet>& facets, std::size_t from, const Vector<3>& by,
+                   const Vector<3>& c) {
     if (by.isZero(0)) return;
-    for (std::size_t k = from; k < facets.size(); ++k)
+    for (std::size_t k = from; k < facets.size(); ++k) {
       for (Vector<3>* corner : {&facets[k].facet.a, &facets[k].facet.b, &facets[k].facet.c}) *corner += by;
+      facets[k].distance = distance(facets[k].facet, c);
+    }
+    sort(facets, from);
+  }
+  static void sort(std::vector<NearFacet>& facets, std::size_t from) {
+    std::stable_sort(facets.begin() + static_cast<std::ptrdiff_t>(from), facets.end(),
+                     [](const NearFacet& a, const NearFacet& b) { return a.distance < b.distance; });
   }
 
   /// Those around the images of a point that are whole windows apart, each of which has its own walls.
@@ -89,7 +98,7 @@ class RepeatedContainer final : public Container {
     std::array<int, 3> more{};
     for (std::size_t k = 0; k < 3; ++k)
       if (const double window = window_[static_cast<int>(k)]; window > 0)
-        more[k] = static_cast<int>(std::min(1e3, std::ceil(reach / window)));
+        more[k] = std::isfinite(reach) ? static_cast<int>(std::ceil(reach / window)) : 1;
     std::vector<NearFacet> near;
     for (int x = -more[0]; x <= more[0]; ++x)
       for (int y = -more[1]; y <= more[1]; ++y)
@@ -98,12 +107,11 @@ class RepeatedContainer final : public Container {
           near.clear();
           around_->facets_near(at - by, reach, near);
           std::erase_if(near, [&](const NearFacet& n) { return n.facet.id >= walls_; });
-          move(near, 0, shift + by);
+          move(near, 0, shift + by, at + shift);
           out.insert(out.end(), near.begin(), near.end());
           if (out.size() - first > most) return false;
         }
-    std::stable_sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
-                     [](const NearFacet& a, const NearFacet& b) { return a.distance < b.distance; });
+    sort(out, first);
     return true;
   }
 

@@ -19,9 +19,10 @@ inline constexpr int most_images = 32;
 ///
 /// A point is asked about at its image in the period, exactly where it lies there already, else off by a
 /// roundoff; facets are given where they are near the point that asked. What reaches beyond the images is
-/// asked for image by image. A way that is longer than they reach is walked in pieces, whose ends are rounded
-/// by a roundoff each; it ends after `most_pieces`, as if there were a wall, unless it runs along an axis and
-/// has met none in a whole period: then it has no end.
+/// asked for window by window of images; an endless reach up to the next windows. A way that is longer than
+/// the images reach is walked in pieces, whose ends are rounded by a roundoff each; it ends after
+/// `most_pieces`, as if there were a wall, unless it runs along an axis and has met none in a whole period:
+/// then it has no end.
 ///
 /// Precondition: `around` is that of `repeated(mesh, images)`, whose first triangles are so many of walls.
 std::unique_ptr<Container> make_repeated_container(std::unique_ptr<const Container> around, const Mesh& mesh,

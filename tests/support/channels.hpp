@@ -64,10 +64,11 @@ inline Mesh open_channel(Mesh closed) {
 }
 
 /// A corrugated tube: one wave a period.
-inline Mesh corrugated_channel(double lower = -1.5, double period = 3) {
+inline Mesh corrugated_channel(double lower = -1.5, double period = 3, std::uint32_t sides = 12,
+                               std::uint32_t rings = 8) {
   return closed_channel(
-      [](double share, double) { return 1 + 0.25 * std::cos(2 * std::numbers::pi * share); }, 12, 8, lower,
-      period);
+      [](double share, double) { return 1 + 0.25 * std::cos(2 * std::numbers::pi * share); }, sides, rings,
+      lower, period);
 }
 
 /// The surface of { f < 0 } in the box [lower, lower + n·step), f repeating itself: by marching through the
