@@ -42,8 +42,8 @@ struct Mesh {
   std::shared_ptr<const TrueSurface> surface = {};
   /// The axes along which it repeats itself, as a channel does. The triangles are then those of one period,
   /// closed: the period is the extent of the vertices, and triangles that lie in one of its two end planes
-  /// are openings and no walls. Precondition: the rims of the openings at both ends have the same corners but
-  /// for the period, exactly, and corners plus whole periods are doubles, as `read_container_mesh` makes them.
+  /// are openings and no walls. Precondition: rims of both ends have the same corners but for the period,
+  /// exactly, and corners plus whole periods are doubles, which `read_container_mesh` makes sure of.
   std::array<bool, 3> periodic = {};
 
   bool repeats() const { return periodic[0] || periodic[1] || periodic[2]; }
