@@ -255,6 +255,17 @@ void require_plain_name(const Output& output, const OutputTable& table, const Se
       fail(fmt::format("ends as the file does that {} writes beside it, \"{}\"", table.name(), ending));
 }
 
+/// Throws unless the format holds what is told by a member.
+void require_held(const OutputTable& table, bool OutputTable::*held, std::string_view what,
+                  const Section& section) {
+  if (table.*held) return;
+  std::vector<std::string_view> others;
+  for (const OutputTable* other : output_tables())
+    if (other->*held) others.push_back(other->name());
+  section.fail("format", fmt::format("the format \"{}\" holds no {}; \"{}\" can", table.name(), what,
+                                     fmt::join(others, "\", \"")));
+}
+
 }  // namespace
 
 void complete_output(Output& output, const Scene& scene) {
@@ -272,22 +283,9 @@ void complete_output(Output& output, const Scene& scene) {
         fmt::format("the format \"{}\" cannot hold a packing of {} dimension{}; \"{}\" can", table.name(),
                     dimension, dimension == 1 ? "" : "s", fmt::join(others, "\", \"")));
   }
-  if (schema::is_tilted(scene) && !table.tilted) {
-    std::vector<std::string_view> others;
-    for (const OutputTable* other : output_tables())
-      if (other->tilted) others.push_back(other->name());
-    section.fail("format", fmt::format("the format \"{}\" holds no tilted periodic box; \"{}\" can",
-                                       table.name(), fmt::join(others, "\", \"")));
-  }
-  if (schema::is_repeated_mesh(scene) && !table.repeated_mesh) {
-    std::vector<std::string_view> others;
-    for (const OutputTable* other : output_tables())
-      if (other->repeated_mesh) others.push_back(other->name());
-    section.fail("format",
-                 fmt::format("the format \"{}\" holds no walls of a mesh that repeats itself; \"{}\" "
-                             "hold the spheres and the period",
-                             table.name(), fmt::join(others, "\", \"")));
-  }
+  if (schema::is_tilted(scene)) require_held(table, &OutputTable::tilted, "tilted periodic box", section);
+  if (schema::is_repeated_mesh(scene))
+    require_held(table, &OutputTable::repeated_mesh, "packing in a mesh that repeats itself", section);
   const bool shrinks = output.contact == ContactTreatment::none || output.contact == ContactTreatment::gap ||
                        output.contact == ContactTreatment::shrink;
   if (!table.has_bridges() && !shrinks) {

@@ -265,7 +265,7 @@ TEST_F(PackChannel, RefusesWhatDoesNotKnowIt) {
                  "zones know no mesh that repeats itself");
   expect_refused("count = 5\nradius = \"largest\"\n", "\"largest\" knows no mesh that repeats itself");
   expect_refused("diameter = 0.3\n[[output]]\nformat = \"stl\"\n",
-                 "holds no walls of a mesh that repeats itself");
+                 "holds no packing in a mesh that repeats itself");
   expect_refused("diameter = 0.3\n[[output]]\nformat = \"liggghts\"\n", "\"lammps\"");
   // The period is too short for spheres that would meet two images of another.
   expect_refused("diameter = 1.4\n", "repeats itself every 3 mm");
