@@ -25,8 +25,10 @@ class RepeatedWall {
   /// those of the next corner by corner, and if an image of a corner is no double.
   explicit RepeatedWall(const Mesh& mesh);
 
-  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, Tally& tally) const {
-    return wall_->wall_state_of(ball, options, tally);
+  /// What closes the images at their ends is farther than R, so that the nearest triangle is one of a wall.
+  WallState wall_state_of(const Ball<3>& ball, const CertifyOptions& options, double least,
+                          Tally& tally) const {
+    return wall_->wall_state_of(ball, options, least, tally);
   }
 
  private:
