@@ -19,8 +19,9 @@ constexpr ClearanceBounds beyond = {-infinity, -std::numeric_limits<double>::den
 
 }  // namespace
 
-ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds)
-    : tree_(tree), lower_(bounds.lower), upper_(bounds.upper) {
+ClearanceField::ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds,
+                               const std::array<bool, 3>& open)
+    : tree_(tree), lower_(bounds.lower), upper_(bounds.upper), open_(open) {
   edge_ = bounds.size().maxCoeff() / cubes_along_longest_edge;
   per_edge_ = 1 / edge_;
   for (int k = 0; k < 3; ++k)
@@ -55,7 +56,8 @@ ClearanceField::Cell ClearanceField::cell_of(const Vector<3>& p) const {
 
 ClearanceBounds ClearanceField::at(const Vector<3>& p) const {
   for (int k = 0; k < 3; ++k)
-    if (!(p[k] >= lower_[k] && p[k] <= upper_[k])) return beyond;
+    if (!(p[k] >= lower_[k] && p[k] <= upper_[k]))
+      return open_[static_cast<std::size_t>(k)] ? ClearanceBounds{} : beyond;
   const Cell cell = cell_of(p);
   const double away = (p - center_of(cell[0], cell[1], cell[2])).norm() + (slack + widening) * edge_;
   const double clearance = clearance_[index(cell)];

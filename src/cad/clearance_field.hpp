@@ -30,7 +30,8 @@ struct ClearanceBounds {
 /// must outlive the field.
 class ClearanceField {
  public:
-  ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds);
+  /// Beyond the bounds is outside, but along the axes that are `open`, where nothing is known of it.
+  ClearanceField(const TriangleTree& tree, const Bounds<3>& bounds, const std::array<bool, 3>& open = {});
 
   ClearanceBounds at(const Vector<3>& p) const;
 
@@ -52,6 +53,7 @@ class ClearanceField {
 
   const TriangleTree& tree_;
   Vector<3> lower_, upper_;
+  std::array<bool, 3> open_;
   double edge_ = 0, per_edge_ = 0;
   Cell count_ = {0, 0, 0};
   std::vector<double> clearance_;

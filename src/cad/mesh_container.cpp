@@ -7,21 +7,24 @@
 #include "bernal/core/error.hpp"
 #include "bernal/core/tolerance.hpp"
 #include "cad/clearance_field.hpp"
+#include "cad/repeated_container.hpp"
 #include "cad/triangle_tree.hpp"
 #include "domain/free_path.hpp"
 #include "domain/inset_container.hpp"
+#include "geometry/openings.hpp"
 
 namespace bernal {
 namespace {
 
 class MeshContainer final : public Container {
  public:
-  MeshContainer(const Mesh& mesh, WallArithmetic arithmetic, double resolution)
+  /// `around`: the mesh itself, or where it repeats itself with its images.
+  MeshContainer(const Mesh& mesh, const Mesh& around, WallArithmetic arithmetic, double resolution)
       : Container(arithmetic, resolution),
         bounds_(bounds_of(mesh)),
         volume_(volume_of(mesh)),
-        tree_(mesh),
-        field_(tree_, bounds_) {}
+        tree_(around),
+        field_(tree_, bounds_, mesh.periodic) {}
 
   std::string_view kind() const override { return "mesh"; }
   Bounds<3> bounds() const override { return bounds_; }
@@ -95,7 +98,16 @@ std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic 
                                                double resolution) {
   if (mesh.triangles.size() < 4)
     throw Error(ErrorCode::bad_argument, "a mesh container needs a closed mesh; use read_container_mesh");
-  auto facets = std::make_unique<MeshContainer>(mesh, arithmetic, resolution);
+  std::unique_ptr<Container> facets;
+  if (mesh.repeats()) {
+    const std::array<int, 3> images = cad::images_around(mesh);
+    const RepeatedMesh around = repeated(mesh, images);
+    facets = cad::make_repeated_container(
+        std::make_unique<MeshContainer>(mesh, around.mesh, arithmetic, resolution), mesh, images,
+        around.mesh.triangles.size() - around.closures);
+  } else {
+    facets = std::make_unique<MeshContainer>(mesh, mesh, arithmetic, resolution);
+  }
   if (mesh.inset == 0) return facets;
   return make_inset_container(std::move(facets), mesh.inset, volume_of(mesh));
 }

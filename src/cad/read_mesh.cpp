@@ -12,6 +12,7 @@
 #include "cad/diagnose/diagnose_mesh.hpp"
 #include "cad/diagnose/self_intersections.hpp"
 #include "cad/exact_corners.hpp"
+#include "cad/open_ends.hpp"
 #include "cad/read/make_triangles.hpp"
 #include "cad/read/read_soup.hpp"
 #include "cad/repair/close_seams.hpp"
@@ -227,6 +228,8 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
                       fmt::format("applies to the surfaces of STEP, IGES and BREP, but {} holds triangles; "
                                   "take the key out",
                                   options.file.filename().string()));
+  if (options.true_surface && options.repeats())
+    throw OptionError("periodic", "is for triangles, and \"true_surface\" is not; take one of the two out");
   if (options.true_surface && !cad::opencascade_reads(options.file))
     throw OptionError(
         "true_surface",
@@ -266,6 +269,9 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   if (factor != 1) move_vertices(mesh, [&](const Vector<3>& v) -> Vector<3> { return factor * v; });
   close_seams_of(triangles, options.weld.value_or(rounding), done);
   if (!options.solids.empty() && by_piece) keep_pieces(mesh, options);
+  const double apart =  // that corners of ends which match may be
+      options.weld.value_or(std::max(rounding, cad::match_over_diagonal * bounds_of(mesh).diagonal()));
+  if (options.repeats()) cad::close_ends(mesh, options.periodic, apart);
   if (options.largest_hole && std::ranges::find(options.repair, Repair::holes) == options.repair.end())
     throw OptionError("largest_hole", "needs repair = [\"holes\"] beside it, which closes them");
   cad::Repairs repairs(options, purpose, mesh, done);
@@ -278,7 +284,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   report.is_repaired = repairs.any;
   report.cautions = std::move(repairs.cautions);
   if (report.usable() && !cad::has_planes(options) && options.obstacles.empty() &&
-      options.interior == std::variant<Interior, Vector<3>>(Interior::solid))
+      options.interior == std::variant<Interior, Vector<3>>(Interior::solid) && !options.repeats())
     caution_about_shell(mesh, options.weld.value_or(rounding), report);
   report.reader = std::move(read.reader);
   if (read.facts.unit) {
@@ -291,6 +297,7 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
   report.notes = std::move(read.facts.notes);
   report.solids = std::move(result.report.solids);
   if (!report.usable()) report.defects = cad::defects_of(mesh);
+  if (report.usable() && options.repeats()) done.push_back(cad::open_ends(mesh, options.periodic, apart));
   report.repairs.insert(report.repairs.begin(), done.begin(), done.end());
   result.report = std::move(report);
   result.mesh = std::move(mesh);
@@ -303,7 +310,8 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
                                                : "";
     cad::attach(std::move(read.surface), unit, result);
   }
-  if (factor != 1 || !taken_out.empty()) cad::state_exactly(result.mesh, as_written, ratio, taken_out);
+  if ((factor != 1 || !taken_out.empty()) && !options.repeats())
+    cad::state_exactly(result.mesh, as_written, ratio, taken_out);
   return result;
 }
 

@@ -119,6 +119,7 @@ WrittenCells write_cells(const Packing& packing, const CellFileOptions& options,
   }
   require_free(folder, names);
   const Interruptible interruptible(monitor);
+  require_closed_walls(packing.domain, "a file of cells");
   if (packing.spheres.empty()) refuse("there are no spheres, and no cells");
   const ShapedCells own = made || writer.is_image ? ShapedCells() : shaped_cells_of(packing, options.cells);
   const auto& [cells, shapes] = made ? *made : own;

@@ -13,6 +13,7 @@
 #include "domain/share_of_area.hpp"
 #include "geometry/changes.hpp"
 #include "geometry/measures.hpp"
+#include "geometry/openings.hpp"
 
 namespace bernal {
 namespace {
@@ -123,6 +124,26 @@ double volume_within(double volume, double area, double inset) {
   return inset == 0 ? volume : std::max(least_share * volume, volume - inset * area);
 }
 
+/// Without its openings.
+double area_of_walls(const Mesh& mesh) {
+  return mesh.repeats() ? area_of(mesh, triangles_of_walls(mesh)) : area_of(mesh);
+}
+
+/// Of the axes along which a mesh repeats itself those along which no wall faces: it is the same everywhere
+/// along these, but for rounding.
+int shifts_of(const Mesh& mesh) {
+  constexpr double rounding = 1e-9;
+  if (!mesh.repeats()) return 0;
+  const std::vector<FaceCorners> walls = triangles_of_walls(mesh);
+  int shifts = 0;
+  for (int k = 0; k < 3; ++k)
+    shifts += mesh.periodic[static_cast<std::size_t>(k)] && std::ranges::all_of(walls, [&](const auto& t) {
+                const Vector<3> normal = doubled_area(mesh, t);
+                return std::abs(normal[k]) <= rounding * normal.norm();
+              });
+  return shifts;
+}
+
 double spacing(double x) {
   x = std::abs(x);
   return std::nextafter(x, std::numeric_limits<double>::infinity()) - x;
@@ -158,6 +179,7 @@ std::string_view kind_of(const Domain& domain) {
 std::string name_of(const Domain& domain) {
   const auto* cylinder = std::get_if<Cylinder>(&domain);
   if (cylinder && cylinder->periodic) return "periodic cylinder";
+  if (is_repeated_mesh(domain)) return "periodic mesh";
   if (std::holds_alternative<Revolved>(domain)) return "solid of revolution";
   const auto* box = std::get_if<Box>(&domain);
   if (!box || !box->repeats()) return std::string(kind_of(domain));
@@ -186,7 +208,7 @@ int symmetries_of(const Domain& domain) {
                                  return shifts;
                                },
                                [](const Cylinder& s) { return s.periodic ? 2 : 1; },
-                               [](const Sphere&) { return 3; }, [](const Mesh&) { return 0; },
+                               [](const Sphere&) { return 3; }, [](const Mesh& s) { return shifts_of(s); },
                                [](const Polygon&) { return 0; }, [](const Revolved&) { return 1; }},
                     domain);
 }
@@ -194,7 +216,7 @@ int symmetries_of(const Domain& domain) {
 bool is_periodic(const Domain& domain) {
   return std::visit(
       Overloaded{[](const Box& s) { return s.repeats(); }, [](const Cylinder& s) { return s.periodic; },
-                 [](const Sphere&) { return false; }, [](const Mesh&) { return false; },
+                 [](const Sphere&) { return false; }, [](const Mesh& s) { return s.repeats(); },
                  [](const Polygon&) { return false; }, [](const Revolved&) { return false; }},
       domain);
 }
@@ -239,7 +261,7 @@ double volume_of(const Domain& domain) {
                  },
                  [](const Cylinder& s) { return pi * s.radius * s.radius * s.height; },
                  [](const Sphere& s) { return ball_volume(3, s.radius); },
-                 [](const Mesh& s) { return volume_within(signed_volume(s), area_of(s), s.inset); },
+                 [](const Mesh& s) { return volume_within(signed_volume(s), area_of_walls(s), s.inset); },
                  [](const Polygon& s) { return volume_within(area_of_polygon(s), length_of(s), s.inset); },
                  [](const Revolved& s) {
                    return volume_within(volume_of_revolved(s), area_of_revolved(s), s.inset);
@@ -261,7 +283,7 @@ double area_of(const Domain& domain) {
           },
           [](const Cylinder& s) { return 2 * pi * s.radius * ((s.periodic ? 0 : s.radius) + s.height); },
           [](const Sphere& s) { return 4 * pi * s.radius * s.radius; },
-          [](const Mesh& s) { return area_of(s); }, [](const Polygon& s) { return length_of(s); },
+          [](const Mesh& s) { return area_of_walls(s); }, [](const Polygon& s) { return length_of(s); },
           [](const Revolved& s) { return area_of_revolved(s); }},
       domain);
 }

@@ -38,6 +38,13 @@ void require_upright(const Domain& domain, std::string_view what) {
                                          "pack in a box without \"tilt\" for that"));
 }
 
+void require_closed_walls(const Domain& domain, std::string_view what) {
+  if (is_repeated_mesh(domain))
+    throw Error(ErrorCode::bad_argument,
+                std::string(what).append(" is not known of a mesh that repeats itself; take \"periodic\" out "
+                                         "of the scene, which closes its ends, for that"));
+}
+
 /// The periods along the axes, whether the box is tilted or not.
 template <int D>
 static Boundary<D> periods_along_axes(const Domain& domain) {
@@ -55,6 +62,14 @@ static Boundary<D> periods_along_axes(const Domain& domain) {
       const int k = cylinder->coordinate_axis();
       metric.edges[k] = cylinder->height;
       metric.origin[k] = bounds_of(domain).lower[k];
+    }
+    if (is_repeated_mesh(domain)) {
+      const Bounds<3> bounds = bounds_of(domain);
+      for (int k = 0; k < 3; ++k) {
+        if (!std::get<Mesh>(domain).periodic[static_cast<std::size_t>(k)]) continue;
+        metric.edges[k] = bounds.upper[k] - bounds.lower[k];
+        metric.origin[k] = bounds.lower[k];
+      }
     }
   }
   return metric;

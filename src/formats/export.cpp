@@ -105,10 +105,9 @@ Domain without_walls(const Domain& domain) {
   Box box{bounds.lower, bounds.size(), std::vector<bool>(static_cast<std::size_t>(dimension_of(domain)))};
   const auto* given = std::get_if<Box>(&domain);
   if (given) box.tilt = given->tilt;
-  const auto* cylinder = std::get_if<Cylinder>(&domain);
+  const Boundary<3> boundary = given ? Boundary<3>() : boundary_in_space(domain);
   for (int k = 0; k < box.dimension(); ++k) {
-    const bool repeats =
-        given ? given->repeats(k) : cylinder && cylinder->periodic && cylinder->coordinate_axis() == k;
+    const bool repeats = given ? given->repeats(k) : boundary.repeats(k);
     box.periodic[static_cast<std::size_t>(k)] = repeats;
     if (repeats) continue;
     box.corner[k] -= box.size[k];

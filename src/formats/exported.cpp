@@ -175,6 +175,7 @@ Domain Mapping::of(const Domain& domain) const { return std::visit(MappedDomain{
 
 Exported exported(const Packing& packing, const Output& output, const Monitor& monitor) {
   const Format& format = format_of(output);
+  if (!format.repeated_mesh) require_closed_walls(packing.domain, "the format");
   const auto converted = unit_conversion(packing.scene.unit, *output.unit);
   const auto rounded = [is_single = format.precision == Precision::as_float](double value) {
     return is_single ? static_cast<double>(static_cast<float>(value)) : value;
@@ -227,6 +228,7 @@ std::array<bool, 3> Exported::periods() const {
       all[static_cast<std::size_t>(k)] = box->repeats(k);
   if (const auto* cylinder = std::get_if<Cylinder>(&domain); cylinder && cylinder->periodic)
     all[static_cast<std::size_t>(cylinder->coordinate_axis())] = true;
+  if (const auto* mesh = std::get_if<Mesh>(&domain)) all = mesh->periodic;
   return all;
 }
 

@@ -223,6 +223,7 @@ Format extxyz_format() {
       .file = "extxyz.xyz",
       .least_dimension = 2,
       .tilted = true,
+      .repeated_mesh = true,
       .write_text = write_extxyz,
       .reads =
           "extended XYZ of OVITO and ASE: Lattice, pbc, Properties with radius or diameter; the last frame",

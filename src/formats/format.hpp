@@ -152,7 +152,7 @@ struct Format {
   // Writing; `writes` is empty if the format is not written.
   std::string_view writes = {};             ///< the program, and what the file holds for it
   std::vector<std::string_view> keys = {};  ///< its options besides those of all formats
-  std::string_view file = {};               ///< this and the next seven are as in an OutputTable
+  std::string_view file = {};               ///< this and the next eight are as in an OutputTable
   std::vector<std::string_view> endings = {};
   std::string_view alone = {};
   int least_dimension = 3, most_dimensions = 3;
@@ -160,6 +160,7 @@ struct Format {
   std::string_view sizes = "radius";
   bool is_folder = false;
   bool tilted = false;  ///< its files state tilted periodic boxes
+  bool repeated_mesh = false;
   bool solids = false;  ///< whether it is given `Exported::solids`
   std::vector<schema::Choice> choices = {};
   std::function<void(const void*, const schema::Section&)> rule = {};

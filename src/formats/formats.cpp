@@ -79,7 +79,8 @@ OutputTable table_for(const Format& format) {
                    .unit = format.unit,
                    .sizes = format.sizes,
                    .is_folder = format.is_folder,
-                   .tilted = format.tilted};
+                   .tilted = format.tilted,
+                   .repeated_mesh = format.repeated_mesh};
   made.keys.choices.insert(made.keys.choices.end(), format.choices.begin(), format.choices.end());
   made.keys.rule = format.rule;
   return made;

@@ -310,6 +310,7 @@ Format gsd_format() {
       .file = "gsd.gsd",
       .least_dimension = 2,
       .sizes = "diameter",
+      .repeated_mesh = true,
       .precision = Precision::as_float,
       .centred = true,
       .write = write_gsd,

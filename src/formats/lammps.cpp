@@ -335,6 +335,7 @@ Format lammps_format() {
           .unit = Unit::m,
           .sizes = "diameter",
           .tilted = true,
+          .repeated_mesh = true,
           .write_text = write_lammps,
           .reads =
               "LAMMPS and LIGGGHTS data files, atom_style sphere or granular, or another with ‹diameter›; an "

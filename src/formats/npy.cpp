@@ -108,6 +108,7 @@ Format npy_format() {
           .file = "npy.npy",
           .least_dimension = 1,
           .most_dimensions = max_dimension,
+          .repeated_mesh = true,
           .wraps = false,
           .write = write_columns,
           .reads = "NumPy array, a row x, y, z, r for each sphere, or x, y, z",

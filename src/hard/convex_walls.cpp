@@ -179,6 +179,7 @@ struct WallsOf {
     return {{.round = true, .center = sphere.center, .extent = sphere.radius}};
   }
   std::vector<Wall<3>> operator()(const Mesh& mesh) const {
+    require_closed_walls(mesh, "growth");
     std::vector<Wall<3>> walls = Planes(mesh, tolerance).find();
     for (Wall<3>& wall : walls) wall.extent -= mesh.inset;
     return walls;

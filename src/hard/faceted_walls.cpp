@@ -24,6 +24,7 @@ struct EachFacet {
   const Add& add;
 
   double operator()(const Mesh& mesh) const {
+    require_closed_walls(mesh, "growth");
     for (const auto& [i, j, k] : mesh.triangles) add(mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]);
     return mesh.inset;
   }

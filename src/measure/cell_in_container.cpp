@@ -28,6 +28,7 @@ CellInContainer::CellInContainer(const Domain& domain, const Container& containe
                       ? make_container(flat_sided(domain), WallArithmetic::plain, container.resolution())
                       : nullptr),
       container_(flat_sided_ ? *flat_sided_ : container) {
+  require_closed_walls(domain, "a cell");
   if (is_faceted(domain)) polygons_.emplace(flat_sided(domain), container_);
 }
 

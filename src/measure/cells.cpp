@@ -80,6 +80,7 @@ void take_faces(const SharedCorners& shared, Cells& cells) {
 
 Cells cells_of(const Spheres<dynamic>& packed, const Domain& domain, const CellsOptions& options) {
   require_upright(domain, "a tessellation into cells");
+  require_closed_walls(domain, "a tessellation into cells");
   require_cells(domain, options);
   const Frame frame = frame_of(domain);
   const Domain local_domain = to_local(domain, frame);

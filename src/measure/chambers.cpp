@@ -259,12 +259,14 @@ std::optional<Chambers> chambers(const Spheres<dynamic>& spheres, const Domain& 
                                  const ChamberOptions& options,
                                  const std::shared_ptr<const Container>& made) {
   if (!has_walls(domain) || dimension_of(domain) != 3 || spheres.empty()) return {};
+  if (is_repeated_mesh(domain)) return {};  // whose chambers go on from period to period
   const std::vector<double>& radii = spheres.r;
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
   return chambers_in(domain, &spheres, *std::ranges::min_element(radii), mean, options, made);
 }
 
 Chambers chambers_for(const Domain& shape, double radius, const ChamberOptions& options) {
+  require_closed_walls(shape, "what chambers there are");
   return chambers_in(shape, nullptr, radius, radius, options, {});
 }
 

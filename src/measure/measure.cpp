@@ -95,6 +95,7 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
   measured.of_contacts =
       contact_sums(spheres, domain, {options.contact_gap, options.gap, options.wall_gap, container});
   if (options.slab) require_upright(domain, "the measurement of a slab");
+  if (options.slab) require_closed_walls(domain, "the measurement of a slab");
   if (options.slab) measured.slab = measure_slab(*options.slab, spheres, domain, gaps, options.gap);
   try {
     const Interruptible listening(options.monitor);
@@ -118,10 +119,12 @@ Measurements measure(const Spheres<dynamic>& spheres, const Domain& domain, cons
     if (upright) measured.column = column_profile(spheres, domain, column);
     measured.order =
         bond_order(spheres, domain, measured.walls ? measured.walls->regions : std::vector<Region>{});
-    if (upright) measured.local = local_packing(spheres, domain, options.local, container);
+    if (upright && !is_repeated_mesh(domain))
+      measured.local = local_packing(spheres, domain, options.local, container);
     measured.structure = structure_factor(spheres, domain, options.structure);
     if (upright) measured.pores = pore_sizes(spheres, domain, pores, container);
     if (!upright) measured.left_out = {"local packing fractions", "pore sizes"};
+    if (is_repeated_mesh(domain)) measured.left_out = {"local packing fractions", "chambers"};
   } catch (const Cancelled&) {
     if (options.all_or_nothing) throw;
   }

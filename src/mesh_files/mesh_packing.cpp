@@ -292,6 +292,7 @@ MeshedPacking mesh_packing(const Packing& packing, const MeshFileOptions& option
                            const Monitor& monitor) {
   require_mesh_format(options, packing.spheres.dimension());
   require_upright(packing.domain, "a mesh");
+  require_closed_walls(packing.domain, "a mesh of the voids");
   const MeshWriter& writer = mesh_writer_of(options.format);
   const fs::path file = file_named(writer.format, named), name = file.filename(), folder = folder_of(file);
   const std::vector<std::string> names = names_of_files(writer, name);

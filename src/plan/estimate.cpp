@@ -13,6 +13,7 @@
 #include "core/close_packing.hpp"
 #include "domain/places.hpp"
 #include "domain/volume_below.hpp"
+#include "geometry/openings.hpp"
 #include "plan/fitting.hpp"
 #include "plan/stages.hpp"
 #include "soft/below_level.hpp"
@@ -100,7 +101,7 @@ struct Part {
 double area_below(const Mesh& mesh, const Vector<3>& up, double level) {
   double area = 0;
   std::vector<Vector<3>> kept;
-  for (const auto& triangle : mesh.triangles) {
+  for (const auto& triangle : triangles_of_walls(mesh)) {
     kept.clear();
     for (std::size_t k = 0; k < 3; ++k) {
       const Vector<3>&a = mesh.vertices[triangle[k]], &b = mesh.vertices[triangle[(k + 1) % 3]];

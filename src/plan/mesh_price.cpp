@@ -22,7 +22,7 @@ MeshPrice price_of_mesh(double spheres, double sphere_edge) {
 }
 
 std::optional<MeshPrice> price_of_mesh(const Plan& plan) {
-  if (plan.scene.dimension() != 3 || is_tilted(plan.domain)) return {};
+  if (plan.scene.dimension() != 3 || is_tilted(plan.domain) || is_repeated_mesh(plan.domain)) return {};
   return price_of_mesh(plan.expected_count);
 }
 

@@ -106,6 +106,7 @@ struct CutDomain {
     return part;
   }
   std::optional<Domain> operator()(const Mesh& mesh) const {
+    require_closed_walls(mesh, "a part cut by a plane");
     constexpr double tolerance = 1e-12;  // of the diagonal: a corner so near to the plane lies on it
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
     for (const Vector<3>& v : mesh.vertices) {

@@ -14,6 +14,7 @@
 #include "scene/layers_of_scene.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
+#include "scene/repeated_mesh.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
 #include "scene/tilted_box.hpp"
@@ -102,6 +103,7 @@ void take_default_stages(Scene& scene) {
 
 std::string_view name_of_domain(const Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
+  if (schema::is_repeated_mesh(scene)) return "mesh that repeats itself";
   if (!box) return scene.dimension() == 2 ? "container of two dimensions" : "container with walls";
   if (schema::is_tilted(scene)) return "tilted periodic box";
   return box->walls.empty() ? "periodic box" : "periodic box that ends at walls along some axes";
@@ -253,6 +255,17 @@ void require_plain_name(const Output& output, const OutputTable& table, const Se
       fail(fmt::format("ends as the file does that {} writes beside it, \"{}\"", table.name(), ending));
 }
 
+/// Throws unless the format holds what is told by a member.
+void require_held(const OutputTable& table, bool OutputTable::*held, std::string_view what,
+                  const Section& section) {
+  if (table.*held) return;
+  std::vector<std::string_view> others;
+  for (const OutputTable* other : output_tables())
+    if (other->*held) others.push_back(other->name());
+  section.fail("format", fmt::format("the format \"{}\" holds no {}; \"{}\" can", table.name(), what,
+                                     fmt::join(others, "\", \"")));
+}
+
 }  // namespace
 
 void complete_output(Output& output, const Scene& scene) {
@@ -270,13 +283,9 @@ void complete_output(Output& output, const Scene& scene) {
         fmt::format("the format \"{}\" cannot hold a packing of {} dimension{}; \"{}\" can", table.name(),
                     dimension, dimension == 1 ? "" : "s", fmt::join(others, "\", \"")));
   }
-  if (schema::is_tilted(scene) && !table.tilted) {
-    std::vector<std::string_view> others;
-    for (const OutputTable* other : output_tables())
-      if (other->tilted) others.push_back(other->name());
-    section.fail("format", fmt::format("the format \"{}\" holds no tilted periodic box; \"{}\" can",
-                                       table.name(), fmt::join(others, "\", \"")));
-  }
+  if (schema::is_tilted(scene)) require_held(table, &OutputTable::tilted, "tilted periodic box", section);
+  if (schema::is_repeated_mesh(scene))
+    require_held(table, &OutputTable::repeated_mesh, "packing in a mesh that repeats itself", section);
   const bool shrinks = output.contact == ContactTreatment::none || output.contact == ContactTreatment::gap ||
                        output.contact == ContactTreatment::shrink;
   if (!table.has_bridges() && !shrinks) {
@@ -316,7 +325,9 @@ bool StageTraits::stands_in_bed(const Scene& scene) const {
 }
 
 bool StageTraits::works_in(const Scene& scene) const {
-  if (stands_in_bed(scene)) return in_bed && (in_plane || scene.dimension() == 3);
+  if (stands_in_bed(scene))
+    return in_bed && (in_plane || scene.dimension() == 3) &&
+           (in_repeated_mesh || !schema::is_repeated_mesh(scene));
   const auto& box = std::get<PeriodicBox>(scene.container);
   return in_box && (box_between_walls || box.walls.empty()) && (in_tilted_box || !schema::is_tilted(scene));
 }
@@ -371,6 +382,7 @@ void complete(Scene& scene) {
   complete_zones(scene);
   check_insides(scene);
   schema::require_tilt_known(scene);
+  schema::require_repetition_known(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),
           {"[engine]", scene.engine->locations});

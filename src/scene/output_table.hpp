@@ -34,6 +34,7 @@ struct OutputTable {
   std::string_view sizes = "radius";  ///< or "diameter": what the file holds
   bool is_folder = false;             ///< what its name is given to, see `is_folder`
   bool tilted = false;                ///< it can state a tilted periodic box
+  bool repeated_mesh = false;         ///< it holds spheres and periods, and no walls
 
   std::string_view name() const { return keys.name; }
   /// Whether spheres may be joined or cut in it; else they can only shrink.

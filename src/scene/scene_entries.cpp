@@ -104,6 +104,27 @@ Member repair() {
   return member;
 }
 
+constexpr std::string_view axis_words[] = {"x", "y", "z"};
+
+/// Words of axes.
+Member periodic_axes() {
+  Member member;
+  member.get = [](const void* mesh) {
+    const auto& axes = static_cast<const MeshFile*>(mesh)->periodic;
+    std::vector<std::string> all;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (axes[k]) all.emplace_back(axis_words[k]);
+    return value_of(all);
+  };
+  member.set = [](void* mesh, const Value& value) {
+    auto& axes = static_cast<MeshFile*>(mesh)->periodic;
+    axes = {};
+    for (const std::string& text : std::get<std::vector<std::string>>(value))
+      axes[static_cast<std::size_t>(std::ranges::find(axis_words, text) - axis_words)] = true;
+  };
+  return member;
+}
+
 void mesh_rule(const MeshFile& mesh, const Section& section) {
   if (mesh.ignore_unit_of_file && !mesh.unit)
     section.refuse("ignore_unit_of_file", "needs a \"unit\" beside it, that of the file's coordinates");
@@ -230,6 +251,11 @@ const std::vector<Entry>& container_entries() {
                                                          "what lies higher than this z is outside",
                                                          {-largest_length, largest_length})),
                     unless("\"solid\"", interior_key()),
+                    names(
+                        periodic_axes(), "periodic",
+                        "axes along which it repeats itself, \"z\" or [\"x\", \"y\"], as a channel does: its "
+                        "flat or open ends there match and are openings; the period is its extent",
+                        words(axis_words)),
                     names(&MeshFile::sha256, "sha256",
                           "of the file, then of every obstacle, as sha256sum prints it: with other bytes "
                           "they are refused; a result names it; a glTF counts together with its buffers, "

@@ -21,6 +21,7 @@ struct StageTraits {
   bool in_plane = false;  ///< in a bed of two dimensions, too
   bool box_between_walls = false;  ///< in a box that ends at walls along some axes, too
   bool in_tilted_box = false;      ///< in a tilted periodic box, too
+  bool in_repeated_mesh = false;   ///< in the bed of a mesh that repeats itself, too
   bool prefers_bed = false;        ///< of one that works in both: where walls are fixed it takes the bed
   int least_dimension = 1, most_dimensions = max_dimension;  ///< of boxes
   bool keeps_sizes = false;      ///< in a bed the sizes stay exactly as they are drawn

@@ -234,12 +234,15 @@ Pressing pressing_of_compression(const Compress& c) {
 template <>
 const StageEntry& entry_of<Compress>() {
   static const StageEntry entry = {
-      .table = stage_table<Compress>(
-          {.name = "compress",
-           .help = "move every sphere along a direction until it touches",
-           .keys = compression_keys(),
-           .choices = ends_of_compression()},
-          {.in_bed = true, .in_plane = true, .only_moves = true, .is_default_in_plane = true}),
+      .table = stage_table<Compress>({.name = "compress",
+                                      .help = "move every sphere along a direction until it touches",
+                                      .keys = compression_keys(),
+                                      .choices = ends_of_compression()},
+                                     {.in_bed = true,
+                                      .in_plane = true,
+                                      .in_repeated_mesh = true,
+                                      .only_moves = true,
+                                      .is_default_in_plane = true}),
       .act_in_bed = of_options(compress),
       .may_bring = {"neighbour lists", "compression"},
       .effects = of_options(effects_of_compression),

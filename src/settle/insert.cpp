@@ -201,6 +201,7 @@ const StageEntry& entry_of<Insert>() {
           {.in_bed = true,
            .in_box = true,
            .in_plane = true,
+           .in_repeated_mesh = true,
            .prefers_bed = true,
            .least_dimension = 2,
            .most_dimensions = 3,

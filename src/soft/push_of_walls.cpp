@@ -175,7 +175,7 @@ void SoftWalls::work_out(std::size_t group, const SoftSphere* spheres, WallPush&
     NearSphere& near = near_[n];
     const std::uint16_t l = near.lane;
     if (!anew_ && push_by_planes(n, spheres[l], out)) continue;
-    const Vector<3> c = place(spheres[l]);
+    const Vector<3> c = seen_from(near.id, place(spheres[l]));
     const double r = radius_at_wall(spheres[l]);
     near.way += way(near.last, c).norm();
     near.last = c;
@@ -205,7 +205,7 @@ void SoftWalls::guard(std::size_t group, const WallPush& push, SoftSphere* spher
     const SoftSphere& before = push.before[near.lane];
     const auto enough = static_cast<float>((1 - kept) * push.free[near.lane]);
     if (enough > 0 && step(before.x, now.x).squared() <= enough * enough) continue;
-    const Vector<3> move = way_between(before, now), c = place(before);
+    const Vector<3> move = way_between(before, now), c = seen_from(near.id, place(before));
     const double length = move.norm();
     if (!(length > 0)) continue;
     if (near.is_fine) {

@@ -53,6 +53,7 @@ void SoftBlocks::cut(std::size_t spheres, const std::array<double, 3>& edges, co
   edges_ = edges;
   sizes_ = sizes;
   skin_ = skin;
+  const std::array<int, 3> before = across_;
   across_ = blocks_across(size_, spheres, edges, sizes, skin);
   std::size_t count = 1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -61,12 +62,43 @@ void SoftBlocks::cut(std::size_t spheres, const std::array<double, 3>& edges, co
     halo_width_[k] = across_[k] > 1 ? static_cast<std::uint64_t>(std::ceil(1.0001 * width)) : 0;
   }
   blocks_.assign(count, Block{});
-  for (auto& colour : colours_) colour.clear();
-  for (std::size_t b = 0; b < count; ++b) {
-    const std::size_t nx = static_cast<std::size_t>(across_[0]), ny = static_cast<std::size_t>(across_[1]);
-    colours_[(b % nx & 1) | (b / nx % ny & 1) << 1 | (b / nx / ny & 1) << 2].push_back(
-        static_cast<std::uint32_t>(b));
+  if (visits_.size() != count || across_ != before) order_visits();
+}
+
+/// A block waits for its neighbours of earlier colours.
+void SoftBlocks::order_visits() {
+  const std::size_t nx = static_cast<std::size_t>(across_[0]), ny = static_cast<std::size_t>(across_[1]);
+  const auto colour_of = [&](std::size_t b) {
+    return (b % nx & 1) | (b / nx % ny & 1) << 1 | (b / nx / ny & 1) << 2;
+  };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    std::vector<std::uint32_t> earlier;  // one that two directions lead to stands once
+    for (std::size_t d = 0; d < directions; ++d)
+      if (const std::size_t other = neighbor_of(b, d); other != b && colour_of(other) < colour_of(b))
+        earlier.push_back(static_cast<std::uint32_t>(other));
+    std::ranges::sort(earlier);
+    const auto repeated = std::ranges::unique(earlier);
+    earlier.erase(repeated.begin(), repeated.end());
+    for (const std::uint32_t other : earlier) pairs.emplace_back(other, static_cast<std::uint32_t>(b));
   }
+  visits_ = Precedence(blocks_.size(), pairs);
+}
+
+/// The block in a direction, or this one where none is there.
+std::size_t SoftBlocks::neighbor_of(std::size_t b, std::size_t direction) const {
+  const std::array<int, 3> step = {static_cast<int>(direction % 3) - 1,
+                                   static_cast<int>(direction / 3 % 3) - 1,
+                                   static_cast<int>(direction / 9) - 1};
+  std::size_t other = 0, before = 1;
+  for (std::size_t k = 0, rest = b; k < 3; rest /= static_cast<std::size_t>(across_[k++])) {
+    const int n = across_[k];
+    if (step[k] != 0 && n == 1) return b;
+    other += before * static_cast<std::size_t>(
+                          (static_cast<int>(rest % static_cast<std::size_t>(n)) + step[k] + n) % n);
+    before *= static_cast<std::size_t>(n);
+  }
+  return other;
 }
 
 /// The region of a block. Its ends agree exactly with the rule that x is in part n · (x / 2^32), rounded
@@ -207,20 +239,9 @@ bool SoftBlocks::find_neighbors(std::size_t b, const std::vector<SoftSphere>& sp
   const auto begin = spheres.begin() + static_cast<std::ptrdiff_t>(block.first_place);
   scratch.spheres.assign(begin, begin + static_cast<std::ptrdiff_t>(block.places));
   scratch.halo.clear();
-  std::array<int, 3> at{};
-  for (std::size_t k = 0, rest = b; k < 3; rest /= static_cast<std::size_t>(across_[k++]))
-    at[k] = static_cast<int>(rest % static_cast<std::size_t>(across_[k]));
   for (std::size_t d = 0; d < directions; ++d) {
-    const std::array<int, 3> step = {static_cast<int>(d % 3) - 1, static_cast<int>(d / 3 % 3) - 1,
-                                     static_cast<int>(d / 9) - 1};
-    std::size_t other = 0;
-    bool is_other = d != here;
-    for (std::size_t k = 3; k-- > 0;) {
-      is_other = is_other && (step[k] == 0 || across_[k] > 1);
-      other = other * static_cast<std::size_t>(across_[k]) +
-              static_cast<std::size_t>((at[k] + step[k] + across_[k]) % across_[k]);
-    }
-    if (!is_other) continue;
+    const std::size_t other = neighbor_of(b, d);
+    if (other == b) continue;
     const Draft& draft = drafts_[other];
     const std::size_t back = directions - 1 - d;
     for (std::uint32_t e = draft.export_start[back]; e < draft.export_start[back + 1]; ++e)
@@ -294,8 +315,7 @@ float SoftBlocks::visit(const Block& block, const SweepTask& task) const {
 
 float SoftBlocks::sweep(const SweepTask& task) const {
   std::vector<float> largest(blocks_.size(), 0.0f);
-  for (const std::vector<std::uint32_t>& colour : colours_)
-    parallel_for(colour.size(), [&](std::size_t n) { largest[colour[n]] = visit(blocks_[colour[n]], task); });
+  parallel_by_precedence(visits_, [&](std::size_t b) { largest[b] = visit(blocks_[b], task); });
   return *std::ranges::max_element(largest);
 }
 

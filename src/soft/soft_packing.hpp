@@ -116,6 +116,8 @@ class SoftPacking {
 
   /// See `SoftBlocks`; 0 where spheres are so few that caches keep them.
   std::size_t bytes_a_sweep() const { return in_blocks_ ? blocks_->bytes_a_sweep() : 0; }
+  /// Null where spheres are so few.
+  const SoftBlocks* blocks() const { return in_blocks_ ? blocks_.get() : nullptr; }
 
   /// How often lists were built.
   const Effect& lists_built() const { return lists_built_; }

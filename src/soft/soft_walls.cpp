@@ -20,6 +20,7 @@ SoftWalls::SoftWalls(const Container& container, const Vector<3>& corner, const 
                      std::size_t spheres)
     : container_(container),
       repeats_(container.boundary().repeats()),
+      varies_(repeats_ && container.kind() == "mesh"),
       inset_(container.inset()),
       corner_(corner),
       unit_(unit),
@@ -149,7 +150,7 @@ void SoftWalls::add_near(std::uint32_t lane, std::uint32_t id, const SoftSphere&
                   .id = id,
                   .first = static_cast<std::uint32_t>(found.until.size()),
                   .first_run = static_cast<std::uint32_t>(found.least_until.size()),
-                  .built_at = place(sphere)};
+                  .built_at = seen_from(id, place(sphere))};
   near.last = near.built_at;
   found.has_fine |= view.is_fine;
   const double moved = way(stands_[id].at, near.built_at).norm();

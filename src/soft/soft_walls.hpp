@@ -163,6 +163,11 @@ class SoftWalls {
     const Vector<3> direct = to - from;
     return repeats_ ? container_.boundary().minimum_image(direct) : direct;
   }
+  /// That place, or of walls that are not the same everywhere along the axes that repeat themselves its image
+  /// nearest to where the sphere stood when it was shown its facets.
+  Vector<3> seen_from(std::uint32_t id, const Vector<3>& at) const {
+    return varies_ ? stands_[id].at + way(stands_[id].at, at) : at;
+  }
   /// Takes back all but a share of the way.
   static void shorten(SoftSphere& to, const SoftSphere& from, double share);
   void stop_stray(SoftSphere& sphere, const SoftSphere& built_at, const Stand&) const;
@@ -191,6 +196,7 @@ class SoftWalls {
   const Made made_{"walls"};
   const Container& container_;
   const bool repeats_;  // along some axis
+  const bool varies_;   // and facets of one period are not those of the next
   const double inset_;
   double relief_ = 0;
   Vector<3> corner_, unit_;

@@ -299,6 +299,7 @@ double cap_volume(double radius, double height) {
 
 Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const SolidsOptions& options,
                  const Monitor& monitor) {
+  require_closed_walls(domain, "a file of solids");
   Solids made{.spheres = spheres, .domain = domain, .pieces = {}, .bridges = {}, .contacts = {}};
   made.bridge_radius = options.bridge_radius;
   made.bridge_angle = options.bridge_angle;

@@ -144,6 +144,7 @@ struct MakeWalls {
   }
 
   WallSurface operator()(const Mesh& mesh) const {
+    require_closed_walls(mesh, "a file of surfaces");
     WallSurface made;
     for (const Vector<3>& v : mesh.vertices) made.walls.vertices.push_back(float_point(v));
     made.walls.triangles = mesh.triangles;

@@ -199,11 +199,12 @@ std::string decided_text(const Certificate& c, const Domain& domain, const std::
   if (!has_walls(domain))
     return fmt::format("{} in a {}, {} decided exactly, no overlap{}", counted_spheres(c.spheres),
                        name_of(domain), pairs, limit);
-  if (is_periodic(domain))
-    return fmt::format("{} in a {}, {} and {} decided exactly, no overlap{}, no protrusion",
-                       counted_spheres(c.spheres), name_of(domain), pairs,
-                       counted(c.walls_tested, "wall", "walls"), limit);
   const auto* mesh = std::get_if<Mesh>(&domain);
+  if (is_periodic(domain))
+    return fmt::format(
+        "{} in a {}, {} and {} decided exactly, no overlap{}, no protrusion", counted_spheres(c.spheres),
+        name_of(domain), pairs,
+        counted(c.walls_tested, mesh ? "near triangle" : "wall", mesh ? "near triangles" : "walls"), limit);
   if (mesh && mesh->surface)
     return fmt::format(
         "{}, {} decided exactly, {} of the CAD surface by proven bounds, no overlap{}, no protrusion",

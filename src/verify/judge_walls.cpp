@@ -13,6 +13,7 @@
 #include "verify/mesh_wall.hpp"
 #include "verify/polygon_wall.hpp"
 #include "verify/predicates.hpp"
+#include "verify/repeated_wall.hpp"
 #include "verify/revolved_wall.hpp"
 #include "verify/true_wall.hpp"
 
@@ -146,6 +147,7 @@ Walls<D> walls_of(const Domain& domain) {
     if (const auto* sphere = std::get_if<Sphere>(&domain)) return made<D>(SphereWall(*sphere));
     if (const auto* revolved = std::get_if<Revolved>(&domain)) return made<D>(RevolvedWall(*revolved));
     const Mesh& mesh = std::get<Mesh>(domain);
+    if (mesh.repeats()) return made<D>(RepeatedWall(mesh));
     return mesh.surface ? made<D>(TrueWall(mesh)) : made<D>(MeshWall(mesh));
   }
   return [](const Ball<D>&, const CertifyOptions&, Tally&) { return WallState(); };

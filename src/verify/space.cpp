@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "bernal/core/error.hpp"
+#include "verify/repeated_wall.hpp"
 
 namespace bernal::verify {
 Vector<dynamic> periods_of(const Domain& domain) {
@@ -26,6 +27,9 @@ Vector<dynamic> periods_of(const Domain& domain) {
     require(axis >= 0, "a cylinder that repeats itself needs an axis along x, y or z");
     repeat(axis, cylinder->height);
   }
+  if (const auto* mesh = std::get_if<Mesh>(&domain); mesh && mesh->repeats())
+    for (int k = 0; k < 3; ++k)
+      if (mesh->periodic[static_cast<std::size_t>(k)]) repeat(k, period_of(*mesh, k));
   return periods;
 }
 

@@ -14,6 +14,7 @@
 #include "core/parallel.hpp"
 #include "domain/revolved_surface.hpp"
 #include "geometry/edges.hpp"
+#include "geometry/openings.hpp"
 #include "geometry/simplified.hpp"
 #include "measure/neighbourhoods.hpp"
 #include "viewer/base64.hpp"
@@ -200,8 +201,12 @@ struct WallsJson {
     return fmt::format(",\"center\":{},\"radius\":{}", json_list(frame.to_local(s.center)),
                        json_number(s.radius / frame.scale));
   }
+  static Mesh without_openings(Mesh mesh) {
+    if (mesh.repeats()) mesh.triangles = triangles_of_walls(mesh);
+    return mesh;
+  }
   std::string operator()(const Mesh& mesh) const {
-    const Mesh shown = simplified(mesh, most_triangles);
+    const Mesh shown = simplified(without_openings(mesh), most_triangles);
     std::vector<std::uint32_t> corners;
     for (const auto& triangle : shown.triangles)
       corners.insert(corners.end(), triangle.begin(), triangle.end());

@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <ctime>
+#include <deque>
+#include <functional>
+#include <queue>
 #include <string>
 #include <utility>
 
@@ -55,6 +58,32 @@ void per_sphere(benchmark::State& state, std::size_t spheres) {
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+/// How many times as fast so many threads visit the blocks as one does, if a visit takes as long as it copies
+/// places, and a thread that is free takes the visit that has been ready for longest.
+double speedup(const SoftBlocks& blocks, std::size_t threads) {
+  const Precedence& order = blocks.order();
+  std::vector<std::uint32_t> left;
+  std::deque<std::size_t> ready;
+  double all = 0, now = 0;
+  for (std::size_t b = 0; b < order.size(); ++b) {
+    left.push_back(order.waits_for(b));
+    if (left.back() == 0) ready.push_back(b);
+    all += static_cast<double>(blocks.places_of_visit(b));
+  }
+  using Visit = std::pair<double, std::size_t>;  // its end, and the block
+  std::priority_queue<Visit, std::vector<Visit>, std::greater<>> under_way;
+  while (!ready.empty() || !under_way.empty()) {
+    for (; !ready.empty() && under_way.size() < threads; ready.pop_front())
+      under_way.emplace(now + static_cast<double>(blocks.places_of_visit(ready.front())), ready.front());
+    const auto [end, block] = under_way.top();
+    under_way.pop();
+    now = end;
+    for (const std::uint32_t next : order.waiting(block))
+      if (--left[next] == 0) ready.push_back(next);
+  }
+  return all / now;
+}
+
 void sweep(benchmark::State& state, const std::string& sizes) {
   const auto kernel = static_cast<std::size_t>(state.range(1));
   const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
@@ -75,6 +104,11 @@ void sweep(benchmark::State& state, const std::string& sizes) {
   state.counters["bytes_a_sphere"] = bytes / static_cast<double>(start.spheres.size());
   state.counters["GB_a_second"] =
       benchmark::Counter(1e-9 * bytes, benchmark::Counter::kIsIterationInvariantRate);
+  if (const SoftBlocks* blocks = packing.blocks()) {
+    state.counters["blocks"] = static_cast<double>(blocks->order().size());
+    for (const std::size_t n : {16, 64})
+      state.counters["times_on_" + std::to_string(n)] = speedup(*blocks, n);
+  }
 }
 void kernels_and_sizes(benchmark::internal::Benchmark* b) {
   b->ArgNames({"spheres", "kernel", "threads"})->UseRealTime();

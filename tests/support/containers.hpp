@@ -13,6 +13,7 @@
 #include "bernal/domain/container.hpp"
 #include "cad/repair/obstacles.hpp"
 #include "domain/rounded.hpp"
+#include "support/channels.hpp"
 #include "support/meshes.hpp"
 #include "support/precise_distance.hpp"
 
@@ -78,7 +79,56 @@ inline std::vector<ContainerUnderTest> containers_under_test() {
                 without(prism_mesh(12, 1, 2),
                         translated(turned(prism_mesh(8, 0.3, 4), {1, 0.2, 0}), {-2, -0.4, 1}))),
       localized("SphereWithCavityMesh", joined(icosphere_mesh(1, 1), inverted(icosphere_mesh(0.5, 0)))),
+      localized("OctagonalChannelMesh", repeating(prism_mesh(8, 1, 2))),
+      localized("CorrugatedChannelMesh", repeating(corrugated_channel(-1.5, 3, 6, 4))),
+      localized("ShortWavesMeshFarAway",
+                repeating(translated(corrugated_channel(0, 0.75, 6, 4), {1e3, -2e3, 5e2}))),
   };
+}
+
+long double precise_clearance(const Domain& shape, const Vector<3>& point);
+
+/// The same for a mesh that repeats itself: over the walls in all periods that can be nearest; the side is
+/// that of the closed period.
+inline long double precise_clearance_of_images(const Mesh& mesh, const Vector<3>& point) {
+  using Real = long double;
+  Vector<3> lower = mesh.vertices.front(), upper = lower;
+  for (const Vector<3>& v : mesh.vertices) {
+    lower = lower.cwiseMin(v);
+    upper = upper.cwiseMax(v);
+  }
+  const Vector<3> size = upper - lower;
+  Real home[3], more[3];
+  for (int k = 0; k < 3; ++k) {
+    const bool repeats = mesh.periodic[static_cast<std::size_t>(k)];
+    home[k] =
+        repeats ? point[k] - size[k] * std::floor((Real(point[k]) - lower[k]) / size[k]) : Real(point[k]);
+    more[k] = repeats ? 1 : 0;  // the nearest point of a wall is at most half a period away along it
+  }
+  Real squared = std::numeric_limits<Real>::infinity();
+  for (const auto& [i, j, k] : mesh.triangles) {
+    bool opening = false;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double end : {lower[axis], upper[axis]})
+        opening =
+            opening || (mesh.periodic[static_cast<std::size_t>(axis)] && mesh.vertices[i][axis] == end &&
+                        mesh.vertices[j][axis] == end && mesh.vertices[k][axis] == end);
+    if (opening) continue;
+    for (Real x = -more[0]; x <= more[0]; ++x)
+      for (Real y = -more[1]; y <= more[1]; ++y)
+        for (Real z = -more[2]; z <= more[2]; ++z) {
+          const Point<Real> p(home[0] - x * size[0], home[1] - y * size[1], home[2] - z * size[2]);
+          const Point<Real> offset = precise_offset(
+              p, Point<Real>(mesh.vertices[i]), Point<Real>(mesh.vertices[j]), Point<Real>(mesh.vertices[k]));
+          squared = std::min(squared, dot(offset, offset));
+        }
+  }
+  Mesh closed = mesh;
+  closed.periodic = {};
+  const bool inside =
+      precise_clearance(closed, Vector<3>(static_cast<double>(home[0]), static_cast<double>(home[1]),
+                                          static_cast<double>(home[2]))) > 0;
+  return (inside ? 1 : -1) * std::sqrt(squared);
 }
 
 /// Signed distance to the wall by the plainest definition, in long double: for a mesh over all its triangles,
@@ -125,6 +175,7 @@ inline long double precise_clearance(const Domain& shape, const Vector<3>& point
     return inside ? least : -least;
   }
   const Mesh& mesh = std::get<Mesh>(shape);
+  if (mesh.repeats()) return precise_clearance_of_images(mesh, point);
   Real squared = std::numeric_limits<Real>::infinity(), solid_angle = 0;
   for (const auto& [i, j, k] : mesh.triangles) {
     const Point<Real> a = mesh.vertices[i], b = mesh.vertices[j], c = mesh.vertices[k];

@@ -213,7 +213,7 @@ inline void append(Mesh& mesh, const Mesh& other) {
 }
 
 inline Mesh joined(Mesh mesh, const Mesh& other) {
-  append(mesh, other);
+  test::append(mesh, other);
   return mesh;
 }
 

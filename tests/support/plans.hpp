@@ -10,6 +10,7 @@
 #include "bernal/core/dimension.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/scene/read_scene.hpp"
+#include "cad/open_ends.hpp"
 #include "plan/estimate.hpp"
 
 // Plans that no scene file can state: of a given mesh, or of a scene that has been scaled and shifted.
@@ -41,6 +42,14 @@ class ScaledSizes : public SizeDistribution {
   double factor_;
 };
 
+/// Rounding of its corners has moved them, less than this.
+inline void make_period_exact(Mesh& mesh) {
+  constexpr double rounding = 1e-12;
+  double farthest = 0;
+  for (const Vector<3>& v : mesh.vertices) farthest = std::max(farthest, v.cwiseAbs().maxCoeff());
+  if (mesh.repeats()) cad::open_ends(mesh, mesh.periodic, rounding * farthest);
+}
+
 inline Domain scaled(Domain shape, double factor) {
   if (auto* box = std::get_if<Box>(&shape)) {
     box->corner *= factor;
@@ -61,6 +70,7 @@ inline Domain scaled(Domain shape, double factor) {
     for (Vector<2>& v : revolved->profile) v *= factor;
   } else {
     for (Vector<3>& v : std::get<Mesh>(shape).vertices) v *= factor;
+    make_period_exact(std::get<Mesh>(shape));
   }
   return shape;
 }
@@ -79,6 +89,7 @@ inline Domain shifted(Domain shape, const Vector<3>& by) {
     revolved->base += by;
   } else {
     for (Vector<3>& v : std::get<Mesh>(shape).vertices) v += by;
+    make_period_exact(std::get<Mesh>(shape));
   }
   return shape;
 }

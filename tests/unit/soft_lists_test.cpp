@@ -190,6 +190,25 @@ TEST(SoftBlocks, AreTheSameForAnyThreadsAndInstructions) {
   for (const SoftKernels& kernels : soft_kernels()) EXPECT_EQ(with_threads(4, kernels), one) << kernels.name;
 }
 
+TEST(SoftBlocks, HaveAnOrderForEveryTwoNeighbors) {
+  const Crowd<3> crowd = equal_crowd(30000);
+  SoftCrowd soft(crowd);
+  std::vector<SoftSphere> spare;
+  SoftBlocks blocks(soft_kernels().front(), 400);
+  ASSERT_TRUE(blocks.build(soft.spheres, soft.ids, spare, crowd.spheres.size(), soft.edges, soft.sizes, 0.1f,
+                           nobody));
+  const Precedence& order = blocks.order();
+  ASSERT_GE(order.size(), 64u);  // four along each axis: then 26 others are neighbours
+  std::size_t waits = 0, first = 0;
+  for (std::size_t b = 0; b < order.size(); ++b) {
+    waits += order.waits_for(b);
+    first += order.waits_for(b) == 0;
+    EXPECT_EQ(order.waits_for(b) + order.waiting(b).size(), 26u) << b;
+  }
+  EXPECT_EQ(waits, 13 * order.size());
+  EXPECT_EQ(first, order.size() / 8) << "one of eight colours begins";
+}
+
 TEST(SoftBlocks, SayWhereOneHoldsTooMany) {
   const Crowd<3> crowd = equal_crowd(70000);
   const BlockSweeps swept(crowd, 1e6, 0, 1, soft_kernels().front());

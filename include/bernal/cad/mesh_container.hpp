@@ -8,6 +8,8 @@ namespace bernal {
 /// A container bounded by a closed mesh: a CGAL AABB tree over its triangles. The mesh is copied.
 /// Precondition: closed, oriented outwards, no self-intersections (what `read_container_mesh` returns).
 /// Cost: building takes O(T log T) and 32,768 distances, about a second for 10^6 triangles, so make it once.
+/// One that repeats itself is held with its images as far as clearances reach: at least three times as many
+/// triangles. Throws Error{bad_argument} where those are more than 32 periods on either side.
 /// Far from the wall a query is one look-up in a field of clearances; near the wall it is O(log T) plus the
 /// triangles between the sphere and its tangent plane.
 std::unique_ptr<Container> make_mesh_container(const Mesh& mesh, WallArithmetic arithmetic,

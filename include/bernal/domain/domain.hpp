@@ -111,8 +111,8 @@ using Domain = std::variant<Box, Cylinder, Sphere, Mesh, Polygon, Revolved>;
 /// "box", "cylinder", "sphere", "mesh", "polygon", "revolved"; "periodic" for a box that repeats itself along
 /// some axis.
 std::string_view kind_of(const Domain&);
-/// What to call it in a sentence: "cylinder", "periodic cylinder", "periodic box", "tilted periodic box",
-/// "box periodic but along axis 2".
+/// What to call it in a sentence: "cylinder", "periodic cylinder", "periodic mesh", "periodic box", "tilted
+/// periodic box", "box periodic but along axis 2".
 std::string name_of(const Domain&);
 
 int dimension_of(const Domain&);
@@ -126,6 +126,12 @@ inline bool is_tilted(const Domain& domain) {
 }
 /// Throws Error{bad_argument} for a tilted periodic box, of which `what` ("a mesh") is not known.
 void require_upright(const Domain&, std::string_view what);
+inline bool is_repeated_mesh(const Domain& domain) {
+  const auto* mesh = std::get_if<Mesh>(&domain);
+  return mesh && mesh->repeats();
+}
+/// Throws Error{bad_argument} for a mesh that repeats itself, of which `what` ("a mesh") is not known.
+void require_closed_walls(const Domain&, std::string_view what);
 /// Whether its walls are many pieces, which may leave room anywhere: a mesh, a polygon or a solid of
 /// revolution.
 inline bool is_faceted(const Domain& domain) {
@@ -140,7 +146,7 @@ inline double margin_of(const Domain& domain) {
 }
 /// How many independent motions, shifts and turns, take the domain into itself for as far as they go: a shift
 /// along each axis that repeats itself, a turn about the axis of a cylinder or of a profile, three about a
-/// sphere's centre. A mesh or a polygon has none.
+/// sphere's centre. A polygon has none, a mesh shifts along which it is the same everywhere.
 int symmetries_of(const Domain&);
 
 /// Smallest axis-aligned bounds, to rounding; along an axis that repeats itself, one period, and of a tilted

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -50,12 +51,16 @@ struct MeshFile {
   std::vector<std::string> cap = {};        ///< planes, "z = 1.1" or "x < 0.5": what they cut off is outside
   std::optional<double> fill_level = {};    ///< as `cap = "z < …"`
   std::variant<Interior, Vector<3>> interior = Interior::solid;  ///< or a point that is inside
+  /// The axes along which it repeats itself: its ends there are openings, see `read_container_mesh`.
+  std::array<bool, 3> periodic = {};
   /// Of the file and then of every obstacle, in hexadecimal, as they were when the scene was run: files whose
   /// bytes are others are refused.
   std::vector<std::string> sha256 = {};
   /// Surfaces that stand in no file, by what `file` and `obstacles` call them, such as "part.off": they are
   /// taken as an OFF file that holds them, and a result has that file beside it.
   std::map<std::filesystem::path, std::shared_ptr<const PolygonSurface>> surfaces = {};
+
+  bool repeats() const { return periodic[0] || periodic[1] || periodic[2]; }
 
   /// The container's, then those of the obstacles.
   std::vector<std::filesystem::path*> files() {

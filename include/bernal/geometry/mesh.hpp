@@ -40,7 +40,13 @@ struct Mesh {
   /// The surface of a CAD file that the triangles stand for, which the certificate then decides on; its flat
   /// triangles are those of the mesh. Null once vertices are moved, and where nobody asks for it.
   std::shared_ptr<const TrueSurface> surface = {};
+  /// The axes along which it repeats itself, as a channel does. The triangles are then those of one period,
+  /// closed: the period is the extent of the vertices, and triangles that lie in one of its two end planes
+  /// are openings and no walls. Precondition: rims of both ends have the same corners but for the period,
+  /// exactly, and corners plus whole periods are doubles, which `read_container_mesh` makes sure of.
+  std::array<bool, 3> periodic = {};
 
+  bool repeats() const { return periodic[0] || periodic[1] || periodic[2]; }
   /// How far the surface of the CAD file may be from the triangles, which packing keeps off them.
   double margin() const { return surface ? surface->largest(&TrueSurface::Face::apart) : 0; }
 };
