@@ -154,7 +154,11 @@ void take_interior(Mesh& mesh, const MeshFile& options, double tolerance, std::v
 }
 
 /// The remedy for the first problem in the report, if no line was found that helps.
-std::string_view remedy(const MeshReport& report) {
+std::string_view remedy(const MeshReport& report, const MeshFile& options) {
+  if (report.open_edges > 0 && options.repeats())
+    return "the openings that \"periodic\" means lie flat in its two end planes, and these do not; close "
+           "them in "
+           "CAD, or cut the part straight across the axis";
   if (report.open_edges > 0) return "the surface has a hole or is a shell; close it in CAD";
   if (report.non_manifold_edges > 0)
     return "walls branch; unite touching bodies and delete inner faces in CAD";
@@ -354,9 +358,9 @@ ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpo
   std::vector<std::string> lines = lines_that_help(options, purpose, result, Effort::quick);
   for (std::string& line : lines)
     if (const std::size_t end = line.find('\n'); end != std::string::npos) line.replace(end, 1, " with ");
-  const std::string help = lines.empty()
-                               ? fmt::format("{}; bernal inspect tries a wrap", remedy(result.report))
-                               : fmt::format("in [container], {} helps", fmt::join(lines, ", or "));
+  const std::string help =
+      lines.empty() ? fmt::format("{}; bernal inspect tries a wrap", remedy(result.report, options))
+                    : fmt::format("in [container], {} helps", fmt::join(lines, ", or "));
   const std::string tried =
       options.repair.empty() ? "" : fmt::format("{}; ", fmt::join(result.report.repairs, "; "));
   throw Error(

@@ -200,7 +200,10 @@ template <int D>
 Grown grow_to(double largest, Spheres<D>& spheres, const Arena<D>& arena, Reporter& report,
               const Grow& options, const std::function<void(double size, double done)>& on_growth) {
   HardSpheres<D> flight(spheres, arena.edges, report.random(Stream::grow),
-                        {.walls = arena.walls, .facets = arena.facets.get(), .masses = options.masses});
+                        {.walls = arena.walls,
+                         .facets = arena.facets.get(),
+                         .room_at_walls = arena.room_at_walls,
+                         .masses = options.masses});
   double rate = growth_rate<D>(spheres, arena.volume, options);
   StageEnd end = StageEnd::converged;
   double next_squeezed = 0, next_filled = 0, locked = 0;

@@ -55,8 +55,11 @@ StageEnd grow(const Grow& options, SpheresInBox& in_box, Reporter& report);
 ///
 /// The walls of a convex container are those of `convex_walls`: facets in one plane to 1e-4 of the smallest
 /// radius count as one. Those of any other are `FacetedWalls`, of a solid of revolution inside of it by up to
-/// 1e-3 of that radius. The result does not rely on this: all spheres enter the bed by the same test as in
-/// any other stage. They end with their radii and the skin of the bed, 1e-9.
+/// 1e-3 of that radius. Where a tenth less than is expected has grown among facets, spheres begin
+/// anew whose centres keep the whole radius away from walls while they are still small, so that none gets
+/// into a groove or a neck in which it has no room in the end. The result does not rely on this: all spheres
+/// enter the bed by the same test as in any other stage. They end with their radii and the skin of the bed,
+/// 1e-9.
 ///
 /// Ends `converged` with all requested or expected spheres, `full` with those that fitted. Throws
 /// Error{bad_scene} if the largest sphere does not fit into the container, or if insertion finds no position
@@ -76,6 +79,7 @@ struct Arena {
   std::vector<Wall<D>> walls;
   double volume;
   std::shared_ptr<const FacetedWalls> facets = {};
+  double room_at_walls = 0;  ///< as `HardSphereOptions::room_at_walls`
 };
 
 struct Grown {

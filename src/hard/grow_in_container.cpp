@@ -29,8 +29,9 @@ constexpr double largest_start = 0.99;
 /// Random places tried for a sphere before the insertion counts as stuck, and the thinnest insertion.
 constexpr int most_trials_between_walls = 10000;
 constexpr double least_phi_init = 1e-6;
-/// More than what is likely to fit, in shares of it, is not tried at once.
-constexpr double most_of_attainable = 1.1;
+/// More than what is likely to fit, in shares of it, is not tried at once; and less than that is not
+/// expected.
+constexpr double most_of_attainable = 1.1, least_of_attainable = 0.9;
 /// What is left free of the volume that jammed spheres take up when the tail is taken out, so that the rest
 /// fits; every further time twice as much. And how much they shrink then, so that they are a fluid again:
 /// with less they jam before they are as dense as the first time.
@@ -45,10 +46,11 @@ constexpr double margin = 3;
 
 /// Spheres on their way to their radii.
 struct Growing : FirstDrawn {
-  double size = 1;     ///< the share of their radii that they have
-  bool grown = false;  ///< they have reached them
+  double size = 1;          ///< the share of their radii that they have
+  bool grown = false;       ///< they have reached them
+  bool keeps_room = false;  ///< their centres are as far from walls as they will be
 
-  void archive(Archive& a) { a(spheres, placed, size, grown); }
+  void archive(Archive& a) { a(spheres, placed, size, grown, keeps_room); }
 };
 
 template <int D>
@@ -100,10 +102,35 @@ class Growth {
       complete(wanted);
       return in_bed_.bed().size() >= wanted ? StageEnd::converged : StageEnd::full;
     }
-    Growing growing{in_bed_.drawn(0)};
+    Growing growing;
+    bool again = false;
+    const Resumable part(report_, "growth in container", [&](Archive& a) { a(again, growing); });
+    if (!again) {
+      growing = grow_as_many_as_fit(wanted, false);
+      again = arena_.facets && growing.spheres.size() < wanted && is_short(growing);
+    }
+    if (again && !cancelled_) {
+      Growing other = grow_as_many_as_fit(wanted, true);
+      if (other.grown &&
+          (!growing.grown || in_bed_.volume_of(other.spheres) > in_bed_.volume_of(growing.spheres)))
+        growing = std::move(other);
+    }
+    const BedKeepsake before(in_bed_);
+    const bool all_there = in_bed_.put_in_bed(growing.spheres);
+    before.give_back_if_denser(in_bed_);
+    if (cancelled_) return StageEnd::cancelled;
+    if (in_bed_.bed().size() < wanted) complete(wanted);
+    if (in_bed_.bed().size() >= wanted) return StageEnd::converged;
+    return all_there ? StageEnd::full : StageEnd::hit_limit;
+  }
+
+ private:
+  /// More and more of the drawn sequence, until they jam or all that are wanted have grown.
+  Growing grow_as_many_as_fit(std::size_t wanted, bool keeps_room) {
+    Growing growing{in_bed_.drawn(0)}, more;
+    growing.keeps_room = keeps_room;
     std::size_t count = std::min(wanted, in_bed_.count_filling(most_of_attainable * in_bed_.task.attainable));
     bool first = true;
-    Growing more;
     const Resumable part(report_, "growth",
                          [&](Archive& a) { a(growing, count, first, more, trims_, random_); });
     for (bool goes_on = part.resumed();;
@@ -117,18 +144,16 @@ class Growth {
       const bool jammed = trims_ > 0 || !grow(more);
       if (jammed) trim_and_grow(more);
       if (first || (more.grown && more.spheres.size() > growing.spheres.size())) growing = std::move(more);
-      if (jammed || growing.spheres.size() >= wanted) break;
+      if (jammed || growing.spheres.size() >= wanted) return growing;
     }
-    const BedKeepsake before(in_bed_);
-    const bool all_there = in_bed_.put_in_bed(growing.spheres);
-    before.give_back_if_denser(in_bed_);
-    if (cancelled_) return StageEnd::cancelled;
-    if (in_bed_.bed().size() < wanted) complete(wanted);
-    if (in_bed_.bed().size() >= wanted) return StageEnd::converged;
-    return all_there ? StageEnd::full : StageEnd::hit_limit;
   }
 
- private:
+  /// Whether so much less than is expected has grown that some must have jammed where they had no room.
+  bool is_short(const Growing& growing) const {
+    return !growing.grown ||
+           in_bed_.volume_of(growing.spheres) < least_of_attainable * in_bed_.task.attainable * arena_.volume;
+  }
+
   /// With those that the walls leave hardly any room, which are never as large as they have to be in flight.
   void complete(std::size_t wanted) {
     SnugPlaces(in_bed_, report_).complete(in_bed_.volume_of_drawn(wanted) / in_bed_.task.container->volume());
@@ -155,12 +180,12 @@ class Growth {
   void insert(Growing& growing) {
     const EffectTimer timer(report_.effects["insertion"]);
     const double filled = in_bed_.volume_of(growing.spheres) / arena_.volume;
-    double phi = options_.phi_init.value_or(0.2);
     do {
-      growing.size = std::min(largest_start, root<D>(phi / filled));
-      if (try_to_insert(growing)) return;
-      phi /= 2;
-    } while (phi > least_phi_init);
+      for (double phi = options_.phi_init.value_or(0.2); phi > least_phi_init; phi /= 2) {
+        growing.size = std::min(largest_start, root<D>(phi / filled));
+        if (try_to_insert(growing)) return;
+      }
+    } while (std::exchange(growing.keeps_room, false));
     throw Error(
         ErrorCode::bad_scene,
         "grow cannot start: random insertion found no place for one of the spheres even where they are "
@@ -173,7 +198,8 @@ class Growth {
         growing.spheres, growing.placed, growing.size, container.bounds(), container.boundary(),
         most_trials_between_walls, [&](double) { return in_bed_.bed().places().draw(random_); },
         [&](const Vector<3>& c, double r) {
-          return container.clearance_within(c, r + inside_) >= r + inside_;
+          const double needed = inside_ + (growing.keeps_room ? full_size_ / growing.size : 1) * r;
+          return container.clearance_within(c, needed) >= needed;
         },
         report_.monitor);
     if (all) growing.placed.assign(growing.spheres.size(), true);
@@ -191,6 +217,7 @@ class Growth {
     }
     if (flying.empty()) return growing.grown = true;
     const double largest = full_size_ / growing.size;
+    arena_.room_at_walls = growing.keeps_room ? largest : 0;
     const auto [end, size] =
         grow_to<D>(largest, flying, arena_, report_, options_, [&](double size_now, double done) {
           const double volume = power<D>(size_now) * volume_of(flying);

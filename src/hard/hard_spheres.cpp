@@ -54,7 +54,8 @@ HardSpheres<D>::HardSpheres(const Spheres<D>& spheres, const Vector<D>& edges, R
       original_(spheres.size()),
       edges_(edges),
       kernel_(options.kernel ? *options.kernel : collision_kernels<D>().front()),
-      walls_(std::move(options.walls), edges, options.facets) {
+      walls_(std::move(options.walls), edges, options.facets),
+      room_at_walls_(options.room_at_walls) {
   const std::size_t n = spheres.size();
   if (options.masses == Masses::by_volume) {
     density_ = 1;
@@ -180,8 +181,8 @@ void HardSpheres<D>::build_shells(double freedom, double largest) {
   }
   shells_.build(homes, radii, freedoms, edges_);
   if (walls_.empty()) return;
-  walls_.start(count(), largest_radius_ * largest_listed_ + std::ranges::max(freedoms));
-  for (Id i = 0; i < count(); ++i) walls_.settle(i, homes[i], radii[i] + freedoms[i]);
+  walls_.start(count(), largest_radius_ * listed_at_walls() + std::ranges::max(freedoms));
+  for (Id i = 0; i < count(); ++i) settle_at_walls(i, homes[i], freedoms[i]);
 }
 
 template <int D>
@@ -236,7 +237,7 @@ FlightPeriod HardSpheres<D>::fly(double growth, double largest, const Monitor& m
       const Vector<D> home = Boundary<D>{edges_}.wrap(spheres_[i].position(now_));
       spheres_[i].set_course(now_, home, spheres_[i].velocity());
       shells_.settle(i, home);
-      if (!walls_.empty()) walls_.settle(i, home, spheres_[i].r * largest_listed_ + shells_.freedom(i));
+      if (!walls_.empty()) settle_at_walls(i, home, shells_.freedom(i));
     } else if (what == touch_wall) {
       reflect(i);
     }
@@ -336,11 +337,8 @@ void HardSpheres<D>::predict(Id i) {
   period_.scanned += neighbors.size();
   scan_.now = now_;
   const double leaves = time_to_leave(i);
-  const FlyingSphere<D>& me = spheres_[i];
-  const double end = std::min(leaves, horizon_ - now_), r = me.r * (size_ + growth_ * now_);
-  const double touches =
-      walls_.empty() ? infinite
-                     : walls_.time_to_touch(i, me.position(now_), me.velocity(), r, me.r * growth_, end);
+  const double end = std::min(leaves, horizon_ - now_);
+  const double touches = walls_.empty() ? infinite : time_to_touch_wall(i, end);
   const double limit = std::min(end, touches);
   for (FirstCollision first = kernel_.scan(scan_); first.delay < limit;) {
     const Id j = neighbors[first.neighbor];
@@ -386,11 +384,11 @@ void HardSpheres<D>::reflect(Id i) {
   FlyingSphere<D>& s = spheres_[i];
   const Vector<D> at = s.position(now_);
   Vector<D> v = s.velocity();
-  const double kick = walls_.reflect(i, at, v, s.r * growth_, 2 * least_kick);
+  const double kick = walls_.reflect(i, at, v, s.r * growth_at_walls(), 2 * least_kick);
   s.set_course(now_, at, v);
   ++period_.reflections;
   period_.wall_momentum += mass(s.r) * kick;
-  virial_ += mass(s.r) * kick * s.r * (size_ + growth_ * now_);
+  virial_ += mass(s.r) * kick * s.r * size_at_walls();
 }
 
 #define BERNAL_INSTANTIATE(D) template class HardSpheres<D>;

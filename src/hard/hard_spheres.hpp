@@ -53,6 +53,9 @@ struct HardSphereOptions {
   std::vector<Wall<D>> walls = {};
   /// In their place in a container that is not convex; they outlive the spheres.
   const FacetedWalls* facets = nullptr;
+  /// Centres keep so many times the given radii away from walls, however large spheres are by then; 0: as far
+  /// as their present radii. Precondition: they begin so far away, and grow no larger.
+  double room_at_walls = 0;
   Masses masses = Masses::equal;
   const CollisionKernel<D>* kernel = nullptr;  ///< the fastest if absent
 };
@@ -108,6 +111,19 @@ class HardSpheres {
   bool has_room() const { return edges_.minCoeff() >= smallest_edge * 2 * largest_radius_ * size_; }
 
  private:
+  /// What walls see of the spheres: the share of their radii, its growth, and the largest that lists allow
+  /// for.
+  double size_at_walls() const { return room_at_walls_ > 0 ? room_at_walls_ : size_ + growth_ * now_; }
+  double growth_at_walls() const { return room_at_walls_ > 0 ? 0 : growth_; }
+  double listed_at_walls() const { return std::max(room_at_walls_, largest_listed_); }
+  double time_to_touch_wall(std::uint32_t i, double limit) {
+    const FlyingSphere<D>& me = spheres_[i];
+    return walls_.time_to_touch(i, me.position(now_), me.velocity(), me.r * size_at_walls(),
+                                me.r * growth_at_walls(), limit);
+  }
+  void settle_at_walls(std::uint32_t i, const Vector<D>& home, double freedom) {
+    walls_.settle(i, home, spheres_[i].r * listed_at_walls() + freedom);
+  }
   using Id = std::uint32_t;
   /// Events other than collisions.
   static constexpr Id look_again = Calendar::none, leave = Calendar::none - 1,
@@ -154,6 +170,7 @@ class HardSpheres {
   CollisionScan<D> scan_{};
   std::vector<double> scratch_;
   Walls<D> walls_;
+  double room_at_walls_;
 
   double mean_diameter_, largest_radius_;  // at size 1
   double density_ = 0;                     // mass over radius to the power D; 0: all masses are 1

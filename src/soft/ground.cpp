@@ -42,10 +42,18 @@ void ContainerGround::place(const Spheres<3>& spheres) {
   if (margin_ == 0) {
     const double resolution = packing_->resolution() / std::ranges::min(spheres.r);
     require_resolution(resolution);
-    margin_ = margin_for(resolution);
+    least_margin_ = margin_for(resolution);
+    margin_ = std::max(least_margin_, first_margin_);
   }
   if (snug_) packing_->relieve_walls(relief_where_snug * margin_ * std::ranges::max(spheres.r));
   packing_->swell(1 + margin_);
+}
+
+bool ContainerGround::narrow_margin() {
+  if (margin_ == least_margin_) return false;
+  margin_ = std::max(least_margin_, 0.5 * margin_);
+  swell(1);
+  return true;
 }
 
 void ContainerGround::move_to_holes(Spheres<3>& spheres, std::vector<std::uint32_t> ids, Random& random) {

@@ -361,13 +361,6 @@ std::vector<float> NeighborRelaxation<D, tilted>::by_id(const std::vector<float>
 }
 
 template <int D, bool tilted>
-void NeighborRelaxation<D, tilted>::exchange(const std::vector<Id>& to) {
-  const std::vector<float> radii = by_id(radii_);
-  for (Id i = 0; i < count_; ++i) ids_[i] = to[ids_[i]];
-  resize(radii);
-}
-
-template <int D, bool tilted>
 void NeighborRelaxation<D, tilted>::resize(const std::vector<float>& radii) {
   float most = 0;
   for (Id i = 0; i < count_; ++i) {

@@ -49,7 +49,11 @@ class NeighborRelaxation {
   std::vector<float> squeeze() const { return by_id(squeeze_); }
   std::vector<float> forces() const { return by_id(force_); }
   /// Sphere to[i] takes the place of sphere i: `to` is a permutation. Cost: O(N).
-  void exchange(const std::vector<std::uint32_t>& to);
+  void exchange(const std::vector<std::uint32_t>& to) {
+    const std::vector<float> radii = by_id(radii_);
+    for (std::uint32_t& id : ids_) id = to[id];
+    resize(radii);
+  }
   /// As `SoftPacking::resize`.
   void resize(const std::vector<float>& radii);
 

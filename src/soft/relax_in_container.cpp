@@ -56,7 +56,7 @@ class Relaxation {
                                : 1),
         snug_(SnugPlaces(in_bed, report).all_touch()),
         wide_(!pours && in_bed.bed().dimension() == 3 && is_for_wide_sizes(in_bed.task.fill_task, options)),
-        crowd_(ContainerGround(in_bed.bed().container(), in_bed.bed().places(), snug_, wide_),
+        crowd_(ContainerGround(in_bed.bed().container(), in_bed.bed().places(), snug_, wide_, first_margin()),
                spheres_to_start_from()),
         target_count_(std::max(crowd_.size(), in_bed.target_count())),
         shrinks_(!pours && !snug_ && in_bed.bed().dimension() == 3 && in_bed.begun == 0 &&
@@ -118,6 +118,12 @@ class Relaxation {
     });
     for (double& r : spheres.r) r += skin_;
     return spheres;
+  }
+
+  /// Wide, unless spheres are to be as dense as they can.
+  double first_margin() const {
+    const bool densest = in_bed_.task.target.fill || options_.exchange || snug_;
+    return densest ? 0 : ContainerGround::wide_margin;
   }
 
   /// Returns whether as many as fit are free of overlap.

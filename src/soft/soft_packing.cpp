@@ -222,9 +222,13 @@ void SoftPacking::take_radii() {
   life_.radii_grew(most);
 }
 
-/// Unless it is asked for all, it looks at some of very many parts.
+/// Unless it is asked for all, it looks at some of very many parts. Those in a container are small: from
+/// random places a few spheres in ten thousand are thrown about by large overlaps for a hundred sweeps, and
+/// would have the lists of all built in every one of these.
 FarthestMoves SoftPacking::farthest_moves(bool of_all) const {
-  constexpr std::size_t part = FarthestMoves::part, enough_parts = 64;
+  constexpr std::size_t small_part = 256;
+  const std::size_t part = walls_ ? small_part : FarthestMoves::part;
+  const std::size_t enough_parts = walls_ ? 512 : 64;
   const std::array<float, 3> scale = scale_of(edges_);
   const std::size_t parts_there = (spheres_.size() + part - 1) / part;
   const std::size_t step = of_all ? 1 : std::max<std::size_t>(1, parts_there / enough_parts);

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -25,9 +29,27 @@ struct CrowdUnderTest {
         places(*container),
         random(1, stream(Stream::test)),
         crowd(ContainerGround(*container, places), std::move(spheres)) {}
+  /// With this margin at first.
+  CrowdUnderTest(std::unique_ptr<Container> of, Spheres<3> spheres, double margin)
+      : container(std::move(of)),
+        places(*container),
+        random(1, stream(Stream::test)),
+        crowd(ContainerGround(*container, places, false, false, margin), std::move(spheres)) {}
 
   StageEnd settle() {
     return crowd.settle({}, [] {});
+  }
+  /// They count as free of overlap in motion, a few more sweeps bring all of them there: as stages do.
+  void come_to_rest() {
+    for (int k = 0; k < 4; ++k) (void)settle();
+  }
+  StageEnd relax(double patience) {
+    return crowd.relax({.patience = patience,
+                        .hopeless_patience = patience,
+                        .failures_a_burst = std::numeric_limits<int>::max(),
+                        .milestone = {},
+                        .is_over = [] { return false; }},
+                       {}, random);
   }
 };
 
@@ -107,6 +129,62 @@ TEST(Crowd, GetsStuckWhereThereIsNone) {
   EXPECT_EQ(tested.settle(), StageEnd::full);
   EXPECT_GT(tested.crowd.largest_overlap(), 0.01);
   EXPECT_GT(tested.crowd.mean_squeeze(), 0.01);
+}
+
+TEST(Crowd, WithAWideMarginComesFreeInFewerSweeps) {
+  const Spheres<3> spheres = random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.08, 0.5);
+  double sweeps = 0;
+  for (const double margin : {1e-4, 2e-2}) {
+    CrowdUnderTest tested(box_of({1, 1, 1}), spheres, margin);
+    ASSERT_EQ(tested.relax(12), StageEnd::converged);
+    if (sweeps > 0) {
+      EXPECT_LT(tested.crowd.sweeps(), sweeps);
+    }
+    sweeps = tested.crowd.sweeps();
+    EXPECT_EQ(tested.crowd.spheres().r, spheres.r);
+    tested.come_to_rest();
+    expect_free(tested.crowd.spheres(), *tested.container);
+  }
+}
+
+TEST(Crowd, NarrowsAMarginThatIsTooWide) {
+  const Spheres<3> spheres = random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.08, 0.56);
+  constexpr double too_wide = 0.015;  // they would fill 0.586
+  CrowdUnderTest tested(box_of({1, 1, 1}), spheres, too_wide);
+  ASSERT_EQ(tested.relax(20), StageEnd::converged);
+  EXPECT_EQ(tested.crowd.spheres().r, spheres.r);
+  const double margin = std::exp(std::log(tested.crowd.largest_overlap()) / tested.crowd.done());
+  EXPECT_LT(margin, 0.51 * too_wide);
+  tested.come_to_rest();
+  expect_free(tested.crowd.spheres(), *tested.container);
+}
+
+TEST(ContainerGround, NarrowsItsMarginToTheLeast) {
+  const std::unique_ptr<Container> container = box_of({1, 1, 1});
+  const Places places(*container);
+  ContainerGround ground(*container, places, false, false, 1e-3);
+  ground.place(random_spheres({{0, 0, 0}, {1, 1, 1}}, 0.08, 0.3));
+  std::vector<double> margins{ground.margin()};
+  while (ground.narrow_margin()) margins.push_back(ground.margin());
+  EXPECT_EQ(margins, (std::vector<double>{1e-3, 5e-4, 2.5e-4, 1.25e-4, 1e-4}));
+  EXPECT_EQ(ground.margin(), 1e-4);
+}
+
+/// From random places some spheres are thrown about in every sweep: not on their account are the lists of all
+/// built each time.
+TEST(Crowd, BuildsListsForMostOfItsSpheres) {
+  constexpr double r = 0.014;
+  Random random(3, stream(Stream::test));
+  Spheres<3> spheres;
+  for (int i = 0; i < 30000; ++i)
+    spheres.push_back(uniform_point(random, Bounds<3>{{0, 0, 0}, {1, 1, 1}}),
+                      r * std::exp(0.3 * random.uniform(-2, 2)));
+  CrowdUnderTest tested(box_of({1, 1, 1}), spheres, 1e-3);
+  double looks = 0;
+  (void)tested.crowd.settle(
+      {}, [&] { ++looks; }, 40);
+  EXPECT_EQ(looks, 2);
+  EXPECT_LT(static_cast<double>(tested.crowd.lists_built().calls), tested.crowd.sweeps() / 2);
 }
 
 TEST(Crowd, StopsWhenItIsTold) {

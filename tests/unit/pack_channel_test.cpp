@@ -186,6 +186,22 @@ TEST_F(PackChannel, EveryStagePacksACorrugatedTube) {
   }
 }
 
+// As a bed in the column that lies as the prism does.
+TEST_F(PackChannel, ABedInAPrismLiesAsInTheColumn) {
+  write("prism.off", test::closed_channel([](double, double) { return 5.0; }, 64, 1, 0, 8));
+  const std::string bed = "diameter = 1.0\ncount = 500\n[[stage]]\ndo = \"settle\"\ndirection = [1, 0, 0]\n";
+  const Packing channel = packed("prism.off", bed),
+                column = packed_in("kind = \"cylinder\"\nradius = 5\nheight = 8\nperiodic = true\n", bed);
+  expect_certified(channel);
+  EXPECT_NE(channel.reason.find("every sphere rests"), std::string::npos) << channel.reason;
+  const auto height = [](const Packing& packing) {
+    double sum = 0;
+    for (const double x : packing.spheres.x[0]) sum += x / static_cast<double>(packing.spheres.size());
+    return sum;
+  };
+  EXPECT_NEAR(height(channel), height(column), 0.1);
+}
+
 TEST_F(PackChannel, ALatticeUnitIsPackedThroughItsPores) {
   write("lattice.off", test::void_of_simple_cubic(8));
   const Packing packing = packed("lattice.off", "diameter = 0.25\n", "[\"x\", \"y\", \"z\"]");
