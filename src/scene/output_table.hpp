@@ -60,6 +60,8 @@ const std::vector<schema::Key>& output_keys();
 /// Checks one output of a scene and fills in what it leaves open. Throws Error{bad_scene} for what its format
 /// cannot hold.
 void complete_output(Output& output, const Scene& scene);
+/// Throws Error{bad_scene} unless every output has a name of its own, and none of the result's.
+void require_names(const Scene& scene);
 
 /// The name of the file that comes with another: "mine.py" with "mine.npy".
 std::string file_beside(const std::filesystem::path& file, std::string_view ending);
