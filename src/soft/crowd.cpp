@@ -18,8 +18,6 @@ constexpr double share_of_margin = 0.97;
 constexpr double crowded = 0.06, wear_of_crowd = 3;
 /// Sweeps from one look at the overlaps to the next.
 constexpr int sweeps_a_look = 25;
-/// Spheres are stuck if, at `Ground::most_slow_looks` looks in a row, the mean squeeze is more than the share
-/// `Ground::hardly_freer` of its least value.
 /// Stirring helps as long as the mean squeeze falls below this share of its least value.
 constexpr double progress = 0.9;
 /// From this mean squeeze on there are far too many spheres, and stirring is of no use.
@@ -32,7 +30,7 @@ constexpr double relocated = 0.002;
 constexpr double relocated_by_squeeze = 1, most_relocated = 0.03;
 constexpr float squeezed_as_well = 0.05f;
 /// Only a few spheres are stuck if the largest overlap ratio is more than this many mean squeezes, or if some
-/// need a hole while the mean squeeze is below `Ground::crowded_everywhere`.
+/// need a hole while the mean squeeze is below `SweepPolicy::crowded_everywhere`.
 constexpr double local_jam = 40;
 constexpr int burst_sweeps = 50;
 /// Sum of squared overlap ratios from which on a sphere needs a hole.
@@ -87,7 +85,7 @@ StageEnd Crowd<Ground>::settle(Settling& so_far, const std::function<bool()>& st
                                const std::function<void()>& milestone, double most_sweeps) {
   StageEnd end = StageEnd::full;
   auto& [slow, sweeps, least_squeeze] = so_far;
-  while (slow < Ground::most_slow_looks) {
+  while (slow < ground_.policy().most_slow_looks) {
     const Pace pace = pace_for(largest_overlap_);
     ground_.engine().wear_lists(Ground::crowds_wear_lists && largest_overlap_ >= crowded ? wear_of_crowd
                                                                                          : pace.wear);
@@ -106,7 +104,7 @@ StageEnd Crowd<Ground>::settle(Settling& so_far, const std::function<bool()>& st
     else if (sweeps_ > most_sweeps)
       end = StageEnd::hit_limit;
     if (end != StageEnd::full) break;
-    slow = mean_squeeze_ > Ground::hardly_freer * least_squeeze ? slow + 1 : 0;
+    slow = mean_squeeze_ > ground_.policy().hardly_freer * least_squeeze ? slow + 1 : 0;
     // The squeeze may oscillate: only a new least value counts, so that this ends.
     least_squeeze = std::min(least_squeeze, mean_squeeze_);
   }
@@ -146,7 +144,7 @@ StageEnd Crowd<Ground>::relax(const Stirring& how, const Monitor& monitor, Rando
         return StageEnd::full;
     }
     // Bursts do most. Spheres that they do not help have no room, or are in the wrong chamber.
-    const bool local = (severe_ > 0 && mean_squeeze_ < Ground::crowded_everywhere) ||
+    const bool local = (severe_ > 0 && mean_squeeze_ < ground_.policy().crowded_everywhere) ||
                        largest_overlap_ > local_jam * mean_squeeze_;
     if (failures % how.failures_a_burst == 0 && !local)
       burst();

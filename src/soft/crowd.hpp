@@ -116,7 +116,7 @@ class Crowd {
                   double most_sweeps);
   /// As `pace_for` says of other dimensions than three.
   float over_relaxation(const Pace& pace) const {
-    return Ground::omega_at(pace) * static_cast<float>(ground_.axes()) / 3;
+    return ground_.policy().omega_at(pace) * static_cast<float>(ground_.axes()) / 3;
   }
   void measure();
   std::vector<std::uint32_t> most_squeezed(std::size_t count) const;

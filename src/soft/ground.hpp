@@ -18,6 +18,23 @@ namespace bernal {
 /// Error{bad_scene} if it is more than 1e-4: then single precision cannot tell the spheres apart.
 void require_resolution(double resolution);
 
+/// How a crowd is swept and stirred.
+struct SweepPolicy {
+  float omega;          ///< over-relaxation; 0: that of `pace_for`
+  int most_slow_looks;  ///< after so many in a row spheres are stuck:
+  double hardly_freer;  ///< at each the mean squeeze is more than this share of its least value
+  /// From this mean squeeze on a burst helps most spheres, also where some are squeezed severely.
+  double crowded_everywhere;
+
+  float omega_at(const Pace& pace) const { return omega > 0 ? omega : pace.omega; }
+};
+/// For spheres that are to be as dense as they can.
+inline constexpr SweepPolicy thorough = {0, 2, 0.85, std::numeric_limits<double>::infinity()};
+/// Spheres that have room need not come to rest with all of their contacts: they are agitated all the time,
+/// and stirred as soon as the mean squeeze does not fall fast. With the wide margin N = 100,000 in two CAD
+/// parts take 1,000 sweeps in place of 1,600 to 2,500. Where there is none, 1 % fewer spheres fit.
+inline constexpr SweepPolicy brisk = {5.7f, 1, 0.75, 0.01};
+
 /// The ground of a `Crowd` in a container: its walls push, and spheres in holes do not overlap them.
 class ContainerGround {
  public:
@@ -29,14 +46,8 @@ class ContainerGround {
   /// Whether lists may be worn further while spheres are crowded; then as many spheres are put into holes as
   /// are stuck.
   static constexpr bool crowds_wear_lists = true;
-  /// Spheres that have room need not come to rest with all of their contacts, as `pace_for` has it: they are
-  /// agitated all the time, and stirred as soon as the mean squeeze does not fall fast. With the wide margin
-  /// N = 100,000 in two CAD parts take 1,000 sweeps in place of 1,600 to 2,500.
-  static constexpr float omega_at(const Pace&) { return 5.7f; }
-  static constexpr int most_slow_looks = 1;
-  static constexpr double hardly_freer = 0.75;
-  /// From this mean squeeze on a burst helps most spheres, also where some are squeezed severely.
-  static constexpr double crowded_everywhere = 0.01;
+  /// Brisk where the margin is wide.
+  const SweepPolicy& policy() const { return first_margin_ > 0 ? brisk : thorough; }
   /// The margin while there is room for it.
   static constexpr double wide_margin = 1e-3;
 
@@ -101,10 +112,7 @@ class BoxGround {
   static constexpr double burst_swelling = D <= 4 ? 1.02 : 1.04;
   static constexpr std::size_t always_stay = 1;
   static constexpr bool crowds_wear_lists = false;
-  static constexpr float omega_at(const Pace& pace) { return pace.omega; }
-  static constexpr int most_slow_looks = 2;
-  static constexpr double hardly_freer = 0.85;
-  static constexpr double crowded_everywhere = std::numeric_limits<double>::infinity();
+  static constexpr const SweepPolicy& policy() { return thorough; }
 
   static int axes() { return D; }
 

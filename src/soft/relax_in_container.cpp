@@ -122,7 +122,8 @@ class Relaxation {
 
   /// Wide, unless spheres are to be as dense as they can.
   double first_margin() const {
-    const bool densest = in_bed_.task.target.fill || options_.exchange || snug_;
+    const bool densest = in_bed_.task.target.fill || options_.exchange || snug_ ||
+                         in_bed_.target_count() > in_bed_.count_filling(in_bed_.task.attainable);
     return densest ? 0 : ContainerGround::wide_margin;
   }
 
