@@ -14,7 +14,7 @@ bool walls_are_made(const Scene& scene) {
   const auto* file = std::get_if<MeshFile>(&scene.container);
   if (!scene.container.obstacles.empty()) return true;
   return file && (!file->solids.empty() || !file->obstacles.empty() || !file->repair.empty() ||
-                  !file->cap.empty() || file->fill_level || file->deflection ||
+                  file->repeats() || !file->cap.empty() || file->fill_level || file->deflection ||
                   file->interior != std::variant<Interior, Vector<3>>(Interior::solid));
 }
 
@@ -39,6 +39,8 @@ std::string certified_walls(const Scene& scene, const Domain& domain) {
   if (!file) return text;
   const auto* mesh = std::get_if<Mesh>(&domain);
   const bool is_true = mesh && mesh->surface;  // which no repair has changed
+  if (file->repeats())
+    text += " The walls are those of the period in container.off, the ends of which match exactly.";
   if (!file->repair.empty() && !is_true)
     text += " The walls are those of the repaired surface, not of the file's.";
   if (is_true) {

@@ -115,6 +115,12 @@ void complete_output(Output& output, const Scene& scene) {
   if (table.keys.find("resolution") && !output.voxel && !output.resolution)
     output.resolution = resolution_of_images;
   if (!output.unit || !table.keys.find("unit")) output.unit = table.unit.value_or(scene.unit);
+  if (schema::is_repeated_mesh(scene) && output.contact != ContactTreatment::none &&
+      output.unit != scene.unit)
+    section.fail("contact",
+                 fmt::format("in a mesh that repeats itself contacts are treated in the unit of the scene "
+                             "only, as its period is exact in that; give unit = \"{}\"",
+                             name_of(scene.unit)));
 }
 
 }  // namespace bernal

@@ -67,7 +67,8 @@ class Relaxation {
     enum class Step { shrink, free, exchange, push_in } step = Step::shrink;
     bool free = false, limited = false;
     const Resumable part(report_, "relaxation", [&](Archive& a) {
-      a(step, free, limited, share_out_, patience_, random_, over_, is_full_, sweeps_of_exchange_);
+      a(step, free, limited, share_out_, patience_, random_, over_, is_full_, sweeps_of_exchange_,
+        has_dealt_);
     });
     if (step == Step::shrink) {
       free = shrinks_ && pack_shrinking();
@@ -206,9 +207,9 @@ class Relaxation {
         before = crowd_.spheres();
         more = count_of_more(share);
         if (more == 0 || !add(more)) return;
-        if (!(gain_ > 1)) crowd_.burst();
+        if (!has_dealt_) crowd_.burst();
       }
-      if (gain_ > 1 ? settle_by_exchange() : relax(options_.patience)) continue;
+      if (has_dealt_ ? settle_by_exchange() : relax(options_.patience)) continue;
       crowd_.restore(before);
       if (more == 1) return;
       share /= 2;
@@ -244,7 +245,8 @@ class Relaxation {
       free = settle_by_exchange();
     }
     sweeps_of_exchange_ += crowd_.sweeps() - sweeps_before;
-    if (free && crowd_.size() > ordinary.size()) {
+    has_dealt_ = free && crowd_.size() > ordinary.size();
+    if (has_dealt_) {
       report_.account =
           fmt::format("an exchange of sizes has made room for {:.1f} % more",
                       100 * (in_bed_.volume_of(crowd_.spheres()) / in_bed_.volume_of(ordinary) - 1));
@@ -330,6 +332,7 @@ class Relaxation {
   const std::size_t target_count_;
   const bool shrinks_;  // to begin with, see `pack_shrinking`
   double sweeps_of_exchange_ = 0;
+  bool has_dealt_ = false;                                       // an exchange of sizes has made room
   double share_out_ = taken_out, patience_ = options_.patience;  // of the next that are taken out
   bool is_full_ = false;                                         // hardly more fit, as is known
   bool over_ = false;  // there is no more time, or no more patience of the user

@@ -21,6 +21,13 @@ inline std::vector<double> periods_of(const Domain& domain) {
       if (box->repeats(k)) periods[static_cast<std::size_t>(k)] = box->size[k];
   if (const auto* cylinder = std::get_if<Cylinder>(&domain); cylinder && cylinder->periodic)
     periods[static_cast<std::size_t>(cylinder->coordinate_axis())] = cylinder->height;
+  if (const auto* mesh = std::get_if<Mesh>(&domain))
+    for (int k = 0; k < 3; ++k) {
+      if (!mesh->periodic[static_cast<std::size_t>(k)]) continue;
+      const auto [least, most] =
+          std::ranges::minmax(mesh->vertices, {}, [&](const Vector<3>& v) { return v[k]; });
+      periods[static_cast<std::size_t>(k)] = most[k] - least[k];
+    }
   return periods;
 }
 

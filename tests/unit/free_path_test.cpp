@@ -343,7 +343,10 @@ TEST_P(FreePathIn, IsTheLeastOfAllFacetsAtEveryLevel) {
       double least = limit;
       for (const NearFacet& n : all)
         least = std::min(least, free_path(n.facet, {c, r, way, limit}, exact_level));
-      EXPECT_EQ(t, least);
+      if (is_repeated_mesh(GetParam().shape))
+        EXPECT_NEAR(t, least, 16 * u * (8 / way.norm() + t));  // pieces of a way end at rounded places
+      else
+        EXPECT_EQ(t, least);
     }
     const double below = lower->free_path(c, r, way, limit);
     EXPECT_LE(below, t);
