@@ -181,10 +181,12 @@ class Growth {
     const EffectTimer timer(report_.effects["insertion"]);
     const double filled = in_bed_.volume_of(growing.spheres) / arena_.volume;
     do {
-      for (double phi = options_.phi_init.value_or(0.2); phi > least_phi_init; phi /= 2) {
+      double phi = options_.phi_init.value_or(0.2);
+      do {
         growing.size = std::min(largest_start, root<D>(phi / filled));
         if (try_to_insert(growing)) return;
-      }
+        phi /= 2;
+      } while (phi > least_phi_init);
     } while (std::exchange(growing.keeps_room, false));
     throw Error(
         ErrorCode::bad_scene,

@@ -194,7 +194,7 @@ StageEnd exchange_sizes(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& in_
   if (!exchanged) overlap = exchange_in_box<D>(spheres, edges, wide, in_box, report);
   exchanged = true;
   if (!overlap) {
-    report.account = "without an exchange of sizes: they are equal or too far apart";
+    report.account = "without an exchange of sizes: they are equal, too far apart or too few of a size";
     return StageEnd::converged;
   }
   const StageEnd end = push_apart<D>(spheres, edges, in_box, report, options, overlap);
