@@ -18,7 +18,7 @@ GOOD = {
     "corner": ["[0, 1, 2]", "[0, 1]"], "extents": ["[1, 2, 3]", "[1, 2]"],
     "points": ["[[0, 0], [9, 0], [0, 9]]"], "lines": ["[[[1, 1], [2, 1], [1, 2]]]"],
     "coordinates": ["[1, -2]"], "lengths": ["[1, 2, 3]"], "shares": ["[1, 1]"], "amounts": ["[0, 1]"],
-    "axes": ["[2]", "[0, 1]"], "distribution": ["1", '{ distribution = "constant", value = 2 }'],
+    "axes": ["[2]", "[]", "[0, 1]"], "distribution": ["1", '{ distribution = "constant", value = 2 }'],
     "parts": ["[1, 2]", '[{ distribution = "mixture", of = [1, { distribution = "uniform", min = 1, '
               'max = 2 }], shares = [1, 2] }, 3]'],
     "solids": ['"part.stl"', '["part.stl", "other.stl"]', '[{ kind = "sphere", radius = 1 }, "part.stl"]'],
@@ -36,7 +36,7 @@ BAD = {
     "extents": ["[1]", "[1, 2, 0]", "[1, 2, 3, 4]", "1"], "points": ["[[0, 0], [1, 1]]", "[[0, 0], [1, 0], [1]]", "1"],
     "lines": ["[[0, 0], [1, 0], [0, 1]]", "[[[0, 0]]]", "1"], "coordinates": ["[]", "1", '["a"]'],
     "lengths": ["[]", "[0]", "[1, -1]", "1", '["a"]'], "shares": ["[]", "[1, 0]", "1"],
-    "amounts": ["[]", "[1, -1]", "1"], "axes": ["[]", "[-1]", "[8]", "[0, 0]", "[0.5]", "1"],
+    "amounts": ["[]", "[1, -1]", "1"], "axes": ["[-1]", "[8]", "[0, 0]", "[0.5]", "1"],
     "distribution": ["0", "-1", '"x"', "[1]", "{}", '{ distribution = "nonsense" }',
                      '{ distribution = "uniform", min = 1 }', '{ distribution = "constant", value = 1, sigma = 1 }'],
     "parts": ["[]", "1", "[0]", '[1, { distribution = "nonsense" }]'],
