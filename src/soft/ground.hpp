@@ -48,8 +48,8 @@ class ContainerGround {
   static constexpr bool crowds_wear_lists = true;
   /// Brisk where the margin is wide.
   const SweepPolicy& policy() const { return first_margin_ > 0 ? brisk : thorough; }
-  /// The margin while there is room for it.
-  static constexpr double wide_margin = 1e-3;
+  /// The margin while there is room for it. With 1e-3 there are a tenth fewer contacts at a gap of 0.002.
+  static constexpr double wide_margin = 5e-4;
 
   /// Along how many axes spheres move: discs stay in the plane z = 0, where nothing pushes them out of it.
   int axes() const { return container_->dimension(); }
