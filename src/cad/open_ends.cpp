@@ -59,9 +59,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 std::set<Edge> rim_at(const Mesh& mesh, int axis, double plane) {
   std::set<Edge> edges;
   for (const FaceCorners& t : mesh.triangles) {
-    if (mesh.vertices[t[0]][axis] != plane || mesh.vertices[t[1]][axis] != plane ||
-        mesh.vertices[t[2]][axis] != plane)
-      continue;
+    if (!lies_in_plane(mesh, t, axis, plane)) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3];
       if (edges.erase({b, a}) == 0) edges.insert({a, b});

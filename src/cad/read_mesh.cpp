@@ -157,8 +157,7 @@ void take_interior(Mesh& mesh, const MeshFile& options, double tolerance, std::v
 std::string_view remedy(const MeshReport& report, const MeshFile& options) {
   if (report.open_edges > 0 && options.repeats())
     return "the openings that \"periodic\" means lie flat in its two end planes, and these do not; close "
-           "them in "
-           "CAD, or cut the part straight across the axis";
+           "them in CAD, or cut the part straight across the axis";
   if (report.open_edges > 0) return "the surface has a hole or is a shell; close it in CAD";
   if (report.non_manifold_edges > 0)
     return "walls branch; unite touching bodies and delete inner faces in CAD";

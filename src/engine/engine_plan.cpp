@@ -29,8 +29,6 @@ struct Refusal {
 
 /// Why the engine cannot have such walls, or empty.
 std::string lack_of_walls(const SceneEngine& engine, const Domain& domain) {
-  if (is_repeated_mesh(domain))
-    return "engines have no walls of a mesh that repeats itself: leave [engine] out";
   const bool is_lammps = std::holds_alternative<Lammps>(engine);
   if (std::holds_alternative<Polygon>(domain)) return "engines pack spheres, no discs; leave [engine] out";
   if (std::holds_alternative<Revolved>(domain))

@@ -223,12 +223,13 @@ double Exported::largest_radius() const {
 
 std::array<bool, 3> Exported::periods() const {
   std::array<bool, 3> all{};
-  if (const auto* box = std::get_if<Box>(&domain))
+  if (const auto* box = std::get_if<Box>(&domain)) {
     for (int k = 0; k < std::min(3, box->dimension()); ++k)
       all[static_cast<std::size_t>(k)] = box->repeats(k);
-  if (const auto* cylinder = std::get_if<Cylinder>(&domain); cylinder && cylinder->periodic)
-    all[static_cast<std::size_t>(cylinder->coordinate_axis())] = true;
-  if (const auto* mesh = std::get_if<Mesh>(&domain)) all = mesh->periodic;
+    return all;
+  }
+  const Boundary<3> boundary = boundary_in_space(domain);
+  for (int k = 0; k < 3; ++k) all[static_cast<std::size_t>(k)] = boundary.repeats(k);
   return all;
 }
 

@@ -132,8 +132,7 @@ void refuse_skewed_walls(const FileBox& box, const Reading& reading) {
     reading.fail(
         "the box is tilted and ends along its third axis, as that of discs does: give ‹dimension=2› if these "
         "are discs, ‹periodic=xyz› if it repeats itself along that axis too; else, as no container with "
-        "skewed "
-        "walls is known, what the spheres lie in, by ‹box› or ‹container›");
+        "skewed walls is known, what the spheres lie in, by ‹box› or ‹container›");
   reading.fail(
       fmt::format("the box is tilted and does not repeat itself along every axis, and no container with "
                   "skewed walls is known; give ‹periodic={}› if it does, else what the spheres lie in, by "

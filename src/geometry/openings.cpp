@@ -20,12 +20,8 @@ class Ends {
   End of(const FaceCorners& t) const {
     for (int k = 0; k < 3; ++k) {
       if (!mesh_.periodic[static_cast<std::size_t>(k)]) continue;
-      for (const bool upper : {false, true}) {
-        const double plane = (upper ? bounds_.upper : bounds_.lower)[k];
-        if (mesh_.vertices[t[0]][k] == plane && mesh_.vertices[t[1]][k] == plane &&
-            mesh_.vertices[t[2]][k] == plane)
-          return {k, upper};
-      }
+      for (const bool upper : {false, true})
+        if (lies_in_plane(mesh_, t, k, (upper ? bounds_.upper : bounds_.lower)[k])) return {k, upper};
     }
     return {};
   }
@@ -43,13 +39,6 @@ void append_image(Mesh& to, const Mesh& mesh, std::uint32_t first, const Ends& e
 }
 
 }  // namespace
-
-std::vector<bool> openings_of(const Mesh& mesh) {
-  const Ends ends(mesh);
-  std::vector<bool> openings(mesh.triangles.size());
-  for (std::size_t t = 0; t < openings.size(); ++t) openings[t] = ends.of(mesh.triangles[t]).axis >= 0;
-  return openings;
-}
 
 std::vector<FaceCorners> triangles_of_walls(const Mesh& mesh) {
   const Ends ends(mesh);

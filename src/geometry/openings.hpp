@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -6,11 +7,13 @@
 
 namespace bernal {
 
-/// Whether each triangle of a mesh that repeats itself is an opening: all its corners lie in the lower or in
-/// the upper end plane of an axis along which it does.
-std::vector<bool> openings_of(const Mesh&);
+/// Whether a triangle lies in the plane in which coordinate `axis` is `at`, exactly.
+inline bool lies_in_plane(const Mesh& mesh, const FaceCorners& triangle, int axis, double at) {
+  return std::ranges::all_of(triangle, [&](std::uint32_t c) { return mesh.vertices[c][axis] == at; });
+}
 
-/// The other triangles: those of the walls of one period.
+/// The triangles of the walls of one period: all but those that lie in the lower or in the upper end plane of
+/// an axis along which the mesh repeats itself, which are openings.
 std::vector<FaceCorners> triangles_of_walls(const Mesh&);
 
 /// The period itself and so many more on either side of it along each axis, as one closed mesh that does not

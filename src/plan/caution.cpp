@@ -59,10 +59,9 @@ std::string caution_of_few_at_walls(const Plan& plan) {
   const bool packs_closely = plan.expected_packing_fraction > closely * plan.attainable_packing_fraction;
   if (!(share > 0) || !packs_closely || plan.radii->min() == plan.radii->max()) return {};
   return fmt::format(
-      "{:.2g} of the largest {} lie across the container: how densely so few pack between walls is a matter "
-      "of "
-      "chance, and the packing fraction is expected give or take {:.2g}; a larger container or smaller sizes "
-      "pack as expected",
+      "{:.2g} of the largest {} lie across the container: how densely so few pack between walls is a "
+      "matter of chance, and the packing fraction is expected give or take {:.2g}; a larger container or "
+      "smaller sizes pack as expected",
       largest_across(plan.domain, *plan.radii), plan.scene.dimension() == 2 ? "discs" : "spheres",
       share * plan.expected_packing_fraction);
 }

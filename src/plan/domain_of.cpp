@@ -307,12 +307,6 @@ Domain without_obstacles(Domain whole, Scene& scene, std::string& notes, std::st
     }
   }
   if (others.empty()) return whole;
-  if (is_repeated_mesh(whole))
-    throw Error(
-        ErrorCode::bad_scene,
-        "nothing is taken out of a mesh that repeats itself; take it out in the CAD program, or close "
-        "the mesh: take \"periodic\" out",
-        scene.container.locations.of("obstacles"));
   Flattened walls = flattened(whole, RoundAs::within);
   double deviation = walls.deviation;
   for (const auto& [solid, name] : others) {

@@ -41,9 +41,7 @@ std::string hint_of_unit(const Plan& plan) {
 
 std::string hint_of_floating(const Plan& plan) {
   const Scene& scene = plan.scene;
-  const auto* cylinder = std::get_if<Cylinder>(&scene.container);
-  const bool has_floor = !scene.is_periodic() && scene.dimension() == 3 &&
-                         !(cylinder && cylinder->periodic) && !is_repeated_mesh(plan.domain);
+  const bool has_floor = !scene.is_periodic() && scene.dimension() == 3 && !is_periodic(plan.domain);
   if (!has_floor || scene.largest || !scene.stages_are_default || scene.target.bed.is_asked() ||
       !scene.target.count || !plan.start.spheres.empty() ||
       plan.expected_packing_fraction > well_below * plan.attainable_packing_fraction)

@@ -32,7 +32,7 @@ struct SweepPolicy {
 inline constexpr SweepPolicy thorough = {0, 2, 0.85, std::numeric_limits<double>::infinity()};
 /// Spheres that have room need not come to rest with all of their contacts: they are agitated all the time,
 /// and stirred as soon as the mean squeeze does not fall fast. With the wide margin N = 100,000 in two CAD
-/// parts take 1,000 sweeps in place of 1,600 to 2,500. Where there is none, 1 % fewer spheres fit.
+/// parts take 900 and 1,400 sweeps in place of 1,600 and 2,400. Where there is none, 1 % fewer spheres fit.
 inline constexpr SweepPolicy brisk = {5.7f, 1, 0.75, 0.01};
 
 /// The ground of a `Crowd` in a container: its walls push, and spheres in holes do not overlap them.

@@ -202,11 +202,12 @@ struct WallsJson {
                        json_number(s.radius / frame.scale));
   }
   static Mesh without_openings(Mesh mesh) {
-    if (mesh.repeats()) mesh.triangles = triangles_of_walls(mesh);
+    mesh.triangles = triangles_of_walls(mesh);
     return mesh;
   }
   std::string operator()(const Mesh& mesh) const {
-    const Mesh shown = simplified(without_openings(mesh), most_triangles);
+    const Mesh shown = mesh.repeats() ? simplified(without_openings(mesh), most_triangles)
+                                      : simplified(mesh, most_triangles);
     std::vector<std::uint32_t> corners;
     for (const auto& triangle : shown.triangles)
       corners.insert(corners.end(), triangle.begin(), triangle.end());

@@ -48,9 +48,10 @@ class PackChannel : public ::testing::Test {
     return run(build(
         parse_scene("unit = \"mm\"\n[container]\n" + container + "[spheres]\n" + spheres, "test.toml")));
   }
-  std::string refusal(const std::string& name, const std::string& spheres) {
+  std::string refusal(const std::string& name, const std::string& spheres,
+                      const std::string& axes = "\"z\"") {
     try {
-      build(scene(name, spheres));
+      build(scene(name, spheres, axes));
     } catch (const Error& error) {
       return error.what();
     }
@@ -227,7 +228,7 @@ TEST_F(PackChannel, AResultIsReadBackAndContinued) {
   const std::string text = testing::text_of(folder.path() / "out" / "scene.toml");
   EXPECT_NE(text.find("periodic = [\"z\"]"), std::string::npos) << text;
 
-  // Shifted by whole periods the spheres are the same start.
+  // As a start they stay, and others come beside them.
   const Packing again = packed("tube.off", "start = \"out/spheres.csv\"\ncount = 160\ndiameter = 0.3\n");
   EXPECT_EQ(again.spheres.size(), 160u) << again.reason;
   expect_certified(again);
@@ -280,9 +281,15 @@ TEST_F(PackChannel, RefusesWhatDoesNotKnowIt) {
   expect_refused("diameter = 0.3\ncount = 5\n[[zone]]\ncount = 3\nplace = \"z < 1\"\ndiameter = 0.3\n",
                  "zones know no mesh that repeats itself");
   expect_refused("count = 5\nradius = \"largest\"\n", "\"largest\" knows no mesh that repeats itself");
+  expect_refused("diameter = 0.3\n[engine]\nkind = \"lammps\"\n",
+                 "[engine] knows no mesh that repeats itself");
   expect_refused("diameter = 0.3\n[[output]]\nformat = \"stl\"\n",
                  "holds no packing in a mesh that repeats itself");
   expect_refused("diameter = 0.3\n[[output]]\nformat = \"liggghts\"\n", "\"lammps\"");
+  EXPECT_NE(
+      refusal("tube.off", "diameter = 0.3\n", "\"z\"\nobstacles = [{ kind = \"sphere\", radius = 0.2 }]")
+          .find("\"obstacles\" know no mesh that repeats itself"),
+      std::string::npos);
   // The period is too short for spheres that would meet two images of another.
   expect_refused("diameter = 1.4\n", "repeats itself every 3 mm");
   // Along the axis nothing holds them.

@@ -50,14 +50,14 @@ std::span<const std::string_view> mesh_file_endings();
 /// of it for the diagnosis; quadratic in the number of faces at one vertex.
 ImportedMesh read_mesh(const MeshFile& options, const ImportFor& purpose = {});
 
+/// The same for a file that must be a container. Throws Error{bad_mesh} with the report's problems and their
+/// remedies in one line if it cannot be one.
+///
 /// Of one that is to repeat itself along some axes the surface may be closed, with flat faces at both ends,
 /// or open there; the faces of the ends become openings. The period is its extent. Rims of both ends must
 /// have the same corners to within `weld`, or where nothing is said a millionth of the diagonal, and the
 /// upper are moved onto the lower; coordinates along the axes are rounded by 2^-47 of the largest, so that
 /// the period is exact. Throws OptionError of "periodic" where they have not, with the place and by how much.
-///
-/// The same for a file that must be a container. Throws Error{bad_mesh} with the report's problems and their
-/// remedies in one line if it cannot be one.
 ImportedMesh read_container_mesh(const MeshFile& options, const ImportFor& purpose);
 
 /// The unit that a CAD file says of itself, as those of STEP, IGES, 3MF, AMF and glTF do. Throws
