@@ -186,7 +186,7 @@ double attainable_in_box(const Plan& plan, const SizeDistribution& radii) {
   const bool between_walls = has_walls(plan.domain) && scene.dimension() == 3 &&
                              any_stage(scene, &StageTraits::reaches, Reaches::close_packing);
   if (!any_in_bed(scene) && !between_walls)
-    return gain_of_stages(scene, radii) * close_packing_at_hand(plan, radii);
+    return gain_of_stages(scene, plan.domain, radii) * close_packing_at_hand(plan, radii);
   if (!plan.box_follows) return expected_packing_fraction(scene, plan.domain, radii);
   Box box = std::get<Box>(plan.domain);
   double attainable = close_packing_fraction(radii, 3);
@@ -306,14 +306,15 @@ FillTask fill_task_of(const Plan& plan) {
   constexpr double rare = 1e-4;
   const int dimension = plan.scene.dimension();
   const Target& target = plan.scene.target;
-  FillTask task{.dimension = dimension,
-                .attainable = plan.attainable_packing_fraction / gain_of_stages(plan.scene, *plan.radii),
-                .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
-                .width_of_sizes = plan.radii->moment(dimension + 1) /
-                                  (plan.radii->moment(dimension) * plan.radii->moment(1)),
-                .has_walls = has_walls(plan.domain),
-                .is_tilted = is_tilted(plan.domain),
-                .may_overlap = plan.scene.overlap > 0};
+  FillTask task{
+      .dimension = dimension,
+      .attainable = plan.attainable_packing_fraction / gain_of_stages(plan.scene, plan.domain, *plan.radii),
+      .size_ratio = plan.radii->quantile(1 - rare) / plan.radii->quantile(rare),
+      .width_of_sizes =
+          plan.radii->moment(dimension + 1) / (plan.radii->moment(dimension) * plan.radii->moment(1)),
+      .has_walls = has_walls(plan.domain),
+      .is_tilted = is_tilted(plan.domain),
+      .may_overlap = plan.scene.overlap > 0};
   if (target.packing_fraction)
     task.packing_fraction = *target.packing_fraction;
   else if (target.count)

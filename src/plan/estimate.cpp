@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "bernal/cad/mesh_container.hpp"
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "bernal/predict/predict.hpp"
 #include "core/close_packing.hpp"
@@ -265,14 +266,22 @@ double close_packing_fraction(const SizeDistribution& radii, int dimension) {
   return dimension == 3 ? predict_packing_fraction(radii).phi : random_close_packing[dimension - 1];
 }
 
-double gain_of_stages(const Scene& scene, const SizeDistribution& radii) {
+double gain_of_stages(const Scene& scene, const Domain& shape, const SizeDistribution& radii) {
   double gain = 0;  // no less than what one of them makes by itself
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   const bool has_walls = box && !box->walls.empty();
+  const auto around = [&](bool in_bed) -> WallsAround {
+    if (!in_bed) return {.has_walls = has_walls};
+    const int dimension = dimension_of(shape);
+    return {.has_walls = true,
+            .in_bed = true,
+            .is_round = !std::holds_alternative<Box>(shape),
+            .volume_in_spheres = volume_of(shape) / (ball_volume(dimension, 1) * radii.moment(dimension))};
+  };
   for (const Stage& stage : scene.stages) {
     const StageEntry& entry = entry_of(stage);
     gain = std::max(gain, entry.gain ? entry.gain(entry.table.options(stage), radii, scene.dimension(),
-                                                  entry.table.traits.stands_in_bed(scene) || has_walls)
+                                                  around(entry.table.traits.stands_in_bed(scene)))
                                      : 1);
   }
   return gain > 0 ? gain : 1;
@@ -327,7 +336,7 @@ double error_between_walls(const Domain& shape, const SizeDistribution& radii) {
 double expected_packing_fraction(const Scene& scene, const Domain& shape, const SizeDistribution& radii,
                                  const std::shared_ptr<const Container>& made) {
   if (reaches(scene, Reaches::close_packing))
-    return gain_of_stages(scene, radii) *
+    return gain_of_stages(scene, shape, radii) *
            reached_by_relaxation(shape, radii, part_to_fill(scene, shape, made));
   if (!reaches(scene, Reaches::settled)) {
     const int dimension = dimension_of(shape);

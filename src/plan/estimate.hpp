@@ -69,6 +69,6 @@ double reached_by_last(const Scene& scene);
 double close_packing_fraction(const SizeDistribution& radii, int dimension);
 
 /// What the stages of a scene that densify make of that, as a factor: 1 where there is none.
-double gain_of_stages(const Scene& scene, const SizeDistribution& radii);
+double gain_of_stages(const Scene& scene, const Domain& shape, const SizeDistribution& radii);
 
 }  // namespace bernal

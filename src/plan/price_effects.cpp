@@ -96,7 +96,7 @@ void price_effects(Plan& plan) {
   Outlook outlook{.task = fill_task_of(plan),
                   .spheres = plan.expected_count,
                   .aim = plan.expected_packing_fraction,
-                  .gain = gain_of_stages(scene, *plan.radii),
+                  .gain = gain_of_stages(scene, plan.domain, *plan.radii),
                   .spread = spread_of(plan),
                   .is_filled = scene.target.fill || is_guess(plan)};
   outlook.size = bounds_of<dynamic>(plan.domain).size() / (2 * plan.radii->moment(1));

@@ -106,7 +106,8 @@ double asked_of(const Packing& packing, const Plan& plan) {
 /// What the sizes that were asked for pack to, however many of them are drawn; without what stages gain
 /// beyond random close packing: a packing is held against that alone.
 double ordinarily_attainable(const Plan& plan) {
-  const double at_hand = plan.attainable_packing_fraction / gain_of_stages(plan.scene, *plan.radii);
+  const double at_hand =
+      plan.attainable_packing_fraction / gain_of_stages(plan.scene, plan.domain, *plan.radii);
   const bool all_drawn = plan.scene.draws() && plan.start.spheres.empty() && coat_of(plan.scene) == 0;
   if (!all_drawn || has_walls(plan.domain)) return at_hand;
   return std::max(at_hand, close_packing_fraction(*plan.radii, plan.scene.dimension()));

@@ -39,7 +39,8 @@ std::vector<Vector<3>> crystal_sites(const Insert& options, const SpheresInBed& 
 StageEnd insert_crystal_in_box(const Insert& options, SpheresInBox& in_box, Reporter& report);
 /// How much denser it is than random packings of equal spheres, in a periodic box; below 1 where it is
 /// looser.
-double gain_of_crystal(const Insert& options, const SizeDistribution& radii, int dimension, bool has_walls);
+double gain_of_crystal(const Insert& options, const SizeDistribution& radii, int dimension,
+                       const WallsAround& around);
 
 /// The packing fraction at which that ends in an empty container.
 double full_crystal(const Insert& options, const EmptyBed& bed);

@@ -132,11 +132,12 @@ double full_crystal(const Insert& options, const EmptyBed& bed) {
   return density_of(options, bed.dimension, bed.largest) * bed.evenness / (1 + wall_deficit * bed.wall_share);
 }
 
-double gain_of_crystal(const Insert& options, const SizeDistribution& radii, int dimension, bool has_walls) {
+double gain_of_crystal(const Insert& options, const SizeDistribution& radii, int dimension,
+                       const WallsAround& around) {
   constexpr double of_equal[] = {1, 1, 0.84, 0.6435};  // at random, by dimension
   // So many are drawn that all sites of the box are taken.
   constexpr double more = 1.001;
-  if (!options.is_crystal() || has_walls || dimension < 2 || dimension > 3) return 1;
+  if (!options.is_crystal() || around.has_walls || dimension < 2 || dimension > 3) return 1;
   const double largest = radii.quantile(1 - 1e-9);
   return more * density_of(options, dimension, largest) / of_equal[dimension];
 }

@@ -42,12 +42,12 @@ void complete_relax(Relax& relax, Scene& scene, const schema::Section& section) 
 
 /// By exchange, of a thousand of the sizes.
 double gain_of_relaxation(const Relax& options, const SizeDistribution& radii, int dimension,
-                          bool has_walls) {
+                          const WallsAround& around) {
   if (!options.exchange || dimension == 1) return 1;
   constexpr int sizes = 1000;
   std::vector<double> some;
   for (int k = 0; k < sizes; ++k) some.push_back(radii.quantile((k + 0.5) / sizes));
-  return SizeExchange(some, dimension).gain(has_walls);
+  return SizeExchange(some, dimension).gain(around);
 }
 
 }  // namespace

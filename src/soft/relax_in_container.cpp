@@ -9,13 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "core/parallel.hpp"
 #include "jam/few_spheres.hpp"
 #include "jam/polish.hpp"
 #include "settle/insert.hpp"
 #include "soft/crowd.hpp"
 #include "soft/shrink_in_container.hpp"
-#include "work/clear_place.hpp"
+#include "soft/start_in_container.hpp"
 #include "work/snug_places.hpp"
 
 namespace bernal {
@@ -27,8 +26,6 @@ constexpr double less_patience = 0.7;
 constexpr double hopeless_patience = 1;
 /// What is pushed in at a time, first and at last.
 constexpr double pushed_in = 0.004, least_pushed_in = 2e-4;
-/// More than what is likely to fit, in shares of it, is not tried at once.
-constexpr double most_of_attainable = 1.1;
 constexpr int most_hand_overs = 20;
 /// As many as fit are found by letting spheres shrink where they are at least so many, in a third of the
 /// time. Fewer are stirred and pushed in.
@@ -42,7 +39,6 @@ constexpr int exchanges_to_settle = 50;
 
 /// Of the radii: a skin up to this is lost in the margin.
 constexpr double thin_skin = 1e-7;
-constexpr std::size_t places_a_task = 1024;
 
 class Relaxation {
  public:
@@ -52,23 +48,25 @@ class Relaxation {
         options_(options),
         random_(report.random(Stream::relax)),
         skin_(in_bed.bed().skin() > thin_skin * in_bed.supply->smallest() ? in_bed.bed().skin() : 0),
-        gain_(options.exchange ? SizeExchange(in_bed.supply->radii(), in_bed.bed().dimension()).gain(true)
-                               : 1),
+        exchanges_(options.exchange &&
+                   SizeExchange(in_bed.supply->radii(), in_bed.bed().dimension()).is_of_use()),
         snug_(SnugPlaces(in_bed, report).all_touch()),
         wide_(!pours && in_bed.bed().dimension() == 3 && is_for_wide_sizes(in_bed.task.fill_task, options)),
         crowd_(ContainerGround(in_bed.bed().container(), in_bed.bed().places(), snug_, wide_, first_margin()),
-               spheres_to_start_from()),
+               spheres_to_start_from(in_bed, options, skin_, random_, report.monitor)),
         target_count_(std::max(crowd_.size(), in_bed.target_count())),
         shrinks_(!pours && !snug_ && in_bed.bed().dimension() == 3 && in_bed.begun == 0 &&
                  in_bed.crowded_start.empty() &&
                  (wide_ || (in_bed.task.target.fill && crowd_.size() >= many_to_fill))) {}
 
   StageEnd run() {
-    enum class Step { shrink, free, exchange, push_in } step = Step::shrink;
+    enum class Step { shrink, free, push_in, exchange, push_in_more, finish } step = Step::shrink;
     bool free = false, limited = false;
+    StageEnd end = StageEnd::full;
+    BedKeepsake ordinary;  // what stands without an exchange
     const Resumable part(report_, "relaxation", [&](Archive& a) {
-      a(step, free, limited, share_out_, patience_, random_, over_, is_full_, sweeps_of_exchange_,
-        has_dealt_);
+      a(step, free, limited, share_out_, patience_, random_, over_, is_full_, sweeps_of_exchange_, has_dealt_,
+        end, ordinary);
     });
     if (step == Step::shrink) {
       free = shrinks_ && pack_shrinking();
@@ -77,50 +75,34 @@ class Relaxation {
     if (step == Step::free) {
       free = free || free_by_dropping();
       limited = over_;  // what is added after that is as much as there is time for
-      const bool exchanges_sizes = free && !over_ && gain_ > 1 && crowd_.size() < target_count_;
-      step = exchanges_sizes ? Step::exchange : Step::push_in;
+      if (!cancelled_) step = Step::push_in;
     }
-    if (step == Step::exchange) exchange();
-    step = Step::push_in;
-    if (free && !over_ && !is_packed_full()) push_in();
-    // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
-    bool all_there = put_in_bed();
-    for (int k = 0; !all_there && free && !cancelled_ && k < most_hand_overs; ++k) {
-      cancelled_ = crowd_.settle(report_.monitor, [this] { tell(); }) == StageEnd::cancelled;
-      all_there = put_in_bed();
+    if (step == Step::push_in) {
+      if (free && !over_ && !is_packed_full()) push_in();
+      const bool has_time = !limited && !cancelled_ && !is_out_of_time();
+      const bool exchanges_sizes = free && has_time && exchanges_ && crowd_.size() < target_count_;
+      end = stand(free, limited);
+      if (exchanges_sizes && end == StageEnd::full) {
+        end = insert_what_else_fits(in_bed_, report_, end);
+        ordinary = BedKeepsake(in_bed_);
+        over_ = cancelled_;
+      }
+      step = exchanges_sizes && end == StageEnd::full ? Step::exchange : Step::finish;
+    }
+    if (step == Step::exchange) {
+      exchange();
+      step = Step::push_in_more;
+    }
+    if (step == Step::push_in_more) {
+      if (has_dealt_ && !over_) push_in();
+      end = keep_denser(ordinary, limited);
     }
     report_.effects["neighbour lists"] += crowd_.lists_built();
     report_.effects["relaxation"].calls += static_cast<std::uint64_t>(crowd_.sweeps());
-    if (cancelled_) return StageEnd::cancelled;
-    if (!all_there || crowd_.size() < target_count_) place_snugly();
-    if (in_bed_.bed().size() >= target_count_) return StageEnd::converged;
-    return limited ? StageEnd::hit_limit : StageEnd::full;
+    return cancelled_ ? StageEnd::cancelled : end;
   }
 
  private:
-  /// The first of the drawn sequence, those in the bed or of the start where they are and the others at
-  /// random: as many as are asked for, or a few more than are likely to fit.
-  Spheres<3> spheres_to_start_from() {
-    const double most = (in_bed_.task.target.fill ? 1 : most_of_attainable) / gain_;
-    const std::size_t count =
-        std::min(in_bed_.target_count(), in_bed_.count_filling(most * in_bed_.task.attainable));
-    auto [spheres, placed] = in_bed_.drawn(std::max<std::size_t>(1, count));
-    const Spheres<3>& begun = in_bed_.crowded_start;
-    const std::uint64_t seed = random_();
-    const Interruptible listening(report_.monitor);
-    parallel_ranges(spheres.size(), places_a_task, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        if (placed[i]) continue;
-        Random own(seed, i);
-        spheres.set_center(i, i < begun.size() ? begun.center(i)
-                                               : clear_place(spheres.r[i], in_bed_.bed().container(),
-                                                             in_bed_.bed().places(), own, report_.monitor));
-      }
-    });
-    for (double& r : spheres.r) r += skin_;
-    return spheres;
-  }
-
   /// Wide, unless spheres are to be as dense as they can.
   double first_margin() const {
     const bool densest = in_bed_.task.target.fill || options_.exchange || snug_ ||
@@ -142,6 +124,31 @@ class Relaxation {
     is_full_ = packed.is_free && (packed.is_full || limited);
     crowd_.restore(std::move(packed.spheres));
     return packed.is_free && !cancelled_;
+  }
+
+  /// Puts them into the bed.
+  StageEnd stand(bool free, bool limited) {
+    // Single precision saw them free of overlap in motion; a few more sweeps bring all of them there.
+    bool all_there = put_in_bed();
+    for (int k = 0; !all_there && free && !cancelled_ && k < most_hand_overs; ++k) {
+      cancelled_ = crowd_.settle(report_.monitor, [this] { tell(); }) == StageEnd::cancelled;
+      all_there = put_in_bed();
+    }
+    if (cancelled_) return StageEnd::cancelled;
+    if (!all_there || crowd_.size() < target_count_) place_snugly();
+    if (in_bed_.bed().size() >= target_count_) return StageEnd::converged;
+    return limited ? StageEnd::hit_limit : StageEnd::full;
+  }
+
+  /// What an exchange of sizes came to, unless more stands without it.
+  StageEnd keep_denser(const BedKeepsake& ordinary, bool limited) {
+    const auto is_denser = [&] { return in_bed_.bed().packing_fraction() > ordinary.packing_fraction(); };
+    StageEnd end = has_dealt_ ? stand(true, limited) : StageEnd::full;
+    if (has_dealt_ && !is_denser()) end = insert_what_else_fits(in_bed_, report_, end);
+    if (has_dealt_ && is_denser()) return end;
+    if (!cancelled_) report_.account = "an exchange of sizes has made no room";
+    in_bed_.put_back(ordinary.spheres());
+    return StageEnd::full;
   }
 
   bool put_in_bed() {
@@ -168,7 +175,7 @@ class Relaxation {
 
   /// Whether they have shrunk to what fits, and no more is likely to be pushed in.
   bool is_packed_full() const {
-    if (!is_full_ || gain_ > 1 || crowd_.size() < many_to_fill) return false;
+    if (!is_full_ || crowd_.size() < many_to_fill) return false;
     const Spheres<3>& spheres = crowd_.spheres();
     std::size_t near = 0;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
@@ -178,9 +185,8 @@ class Relaxation {
     return static_cast<double>(near) < share_near_walls * static_cast<double>(spheres.size());
   }
 
-  bool is_over_after(double sweeps) const {
-    return sweeps > options_.sweeps || (options_.seconds > 0 && seconds() > options_.seconds);
-  }
+  bool is_over_after(double sweeps) const { return sweeps > options_.sweeps || is_out_of_time(); }
+  bool is_out_of_time() const { return options_.seconds > 0 && seconds() > options_.seconds; }
 
   /// How many of the sequence, up to the target, this share of those that are there is.
   std::size_t count_of_more(double share) const {
@@ -295,7 +301,7 @@ class Relaxation {
 
   bool exchange_is_over() {
     cancelled_ = report_.stop();
-    over_ = over_ || cancelled_ || (options_.seconds > 0 && seconds() > options_.seconds);
+    over_ = over_ || cancelled_ || is_out_of_time();
     return over_;
   }
 
@@ -324,10 +330,10 @@ class Relaxation {
   const Relax options_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Random random_;
-  const double skin_;  // that the radii are relaxed with, where it is not thin: far from the origin
-  const double gain_;  // by exchange: 1 where there is none
-  const bool snug_;    // between the walls
-  const bool wide_;    // sizes
+  const double skin_;     // that the radii are relaxed with, where it is not thin: far from the origin
+  const bool exchanges_;  // sizes, which is of use
+  const bool snug_;       // between the walls
+  const bool wide_;       // sizes
   CrowdInContainer crowd_;
   const std::size_t target_count_;
   const bool shrinks_;  // to begin with, see `pack_shrinking`

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/order.hpp"
 
@@ -15,10 +16,15 @@ namespace {
 constexpr float most_excess = 3;
 constexpr double first_step = 0.012, last_step = 0.1 * first_step, share_of_long_steps = 0.3;
 constexpr int bits_a_pass = 11, passes = 3;
+/// What few spheres in a bed lose of the gain, in shares of one over the volume in spheres; no more than most
+/// of it.
+constexpr double lost_at_round_walls = 10, lost_at_flat_walls = 5, least_kept = 0.1;
+/// Of what closing a gap gains, what is left of it in a bed.
+constexpr double kept_of_classes_in_bed = 0.2;
 constexpr double most_gain = 0.07, most_gain_at_walls = 0.105, spread_of_gain = 0.045;
 /// Of the classes on both sides of a gap what takes other sizes. From 0.25 to 0.5 it makes no difference.
 constexpr double widened_part = 0.35;
-/// Fewer spheres are no class.
+/// Fewer spheres are no class; between two classes they lie on the way from one to the other.
 constexpr std::size_t fewest_of_class = 6;
 /// The share of the way after which classes are as wide as they become, and those at which they begin to be
 /// narrowed and end.
@@ -44,8 +50,8 @@ SizeExchange::SizeExchange(const std::vector<double>& radii, int dimension)
 }
 
 /// Classes begin at gaps that no exchange crosses. What a widening closes lessens the gain in proportion to
-/// its share of the way from the smallest size to the largest. The variance is that of ln r within what
-/// exchanges can reach (Welford).
+/// its share of the way from the smallest size to the largest, and the more the fewer there are on one side
+/// of it. The variance is that of ln r within what exchanges can reach (Welford).
 void SizeExchange::find_classes() {
   const std::size_t n = ascending_.size();
   if (n == 0) return;
@@ -53,20 +59,34 @@ void SizeExchange::find_classes() {
   for (std::size_t k = 0; k < n; ++k)
     if (k == 0 || log_at(k) - log_at(k - 1) >= longest_way) begins.push_back(k);
   begins.push_back(n);
-  double lost = 0, way = 0, sum = 0, mean = 0, squares = 0, members = 0;
-  for (std::size_t c = 0; c + 1 < begins.size(); ++c) {
-    if (c > 0) {
-      const std::size_t at = begins[c], fewer = std::min(at - begins[c - 1], begins[c + 1] - at);
-      const double gap = log_at(at) - log_at(at - 1);
-      if (gap <= farthest && fewer >= fewest_of_class) {
-        const auto part = static_cast<std::size_t>(widened_part * static_cast<double>(fewer));
-        bridges_.push_back({at - part, at + part});
-        lost += gap * gap / farthest;
-        way += gap;
-      } else {
-        sum += squares;
-        mean = squares = members = 0;
-      }
+  const std::size_t classes = begins.size() - 1;
+  const auto members_of = [&](std::size_t c) { return begins[c + 1] - begins[c]; };
+  double lost = 0, lost_in_bed = 0;
+  std::vector<bool> is_joined(classes, false);  // to the class before
+  std::size_t before = classes;                 // the last one that is a class
+  for (std::size_t c = 0; c < classes; ++c) {
+    if (members_of(c) < fewest_of_class) continue;
+    const std::size_t below = std::exchange(before, c);
+    if (below == classes) continue;
+    const std::size_t end = begins[below + 1], at = begins[c];
+    const double gap = log_at(at) - log_at(end - 1);
+    if (gap > farthest) continue;
+    const auto fewer = static_cast<double>(std::min(members_of(below), members_of(c)));
+    const auto part = static_cast<std::size_t>(widened_part * fewer);
+    bridges_.push_back({end - part, at + part});
+    for (std::size_t k = below + 1; k <= c; ++k) is_joined[k] = true;
+    const double balance = 2 * fewer / static_cast<double>(members_of(below) + members_of(c));
+    const double gained = std::sqrt(balance) * gap * (1 - gap / farthest);
+    lost += gap - gained;
+    lost_in_bed += gap - kept_of_classes_in_bed * gained;
+  }
+  double way = 0, sum = 0, mean = 0, squares = 0, members = 0;
+  for (std::size_t c = 0; c < classes; ++c) {
+    if (is_joined[c]) {
+      way += log_at(begins[c]) - log_at(begins[c] - 1);
+    } else {
+      sum += squares;
+      mean = squares = members = 0;
     }
     way += log_at(begins[c + 1] - 1) - log_at(begins[c]);
     for (std::size_t k = begins[c]; k < begins[c + 1]; ++k) {
@@ -76,7 +96,10 @@ void SizeExchange::find_classes() {
     }
   }
   spread_ = std::sqrt((sum + squares) / static_cast<double>(n));
-  if (way > 0) ease_ = 1 - lost / way;
+  if (way > 0) {
+    ease_ = 1 - lost / way;
+    ease_in_bed_ = 1 - lost_in_bed / way;
+  }
 }
 
 void SizeExchange::set(std::uint32_t sphere, float log_radius) {
@@ -134,8 +157,11 @@ const std::vector<std::uint32_t>& SizeExchange::deal(const std::vector<float>& f
   return to_;
 }
 
-double SizeExchange::gain(bool has_walls) const {
-  return 1 + (has_walls ? most_gain_at_walls : most_gain) * ease_ * (1 - std::exp(-spread_ / spread_of_gain));
+double SizeExchange::gain(const WallsAround& around) const {
+  const double gain = (around.has_walls ? most_gain_at_walls : most_gain) *
+                      (around.in_bed ? ease_in_bed_ : ease_) * (1 - std::exp(-spread_ / spread_of_gain));
+  const double lost = (around.is_round ? lost_at_round_walls : lost_at_flat_walls) / around.volume_in_spheres;
+  return 1 + std::max(gain - lost, least_kept * gain);
 }
 
 double exchange_step(double done) {

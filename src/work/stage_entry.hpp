@@ -14,6 +14,15 @@
 
 namespace bernal {
 
+/// What stands around spheres that a stage makes denser than they are by themselves.
+struct WallsAround {
+  bool has_walls = false;
+  bool in_bed = false;
+  bool is_round = true;  ///< in a bed: some walls may be
+  /// In a bed: the volume within the walls, in mean volumes of a sphere.
+  double volume_in_spheres = std::numeric_limits<double>::infinity();
+};
+
 /// What a stage is expected to meet: all that the price of its effects depends on.
 struct Outlook {
   FillTask task;
@@ -61,9 +70,9 @@ struct StageEntry {
   std::function<bool(const void*, const FillTask&)> leaves_overlap = {};
   /// Of a stage that reaches what its options say and no more: that packing fraction.
   std::function<double(const void*)> reached = {};
-  /// Of one that makes denser packings of these sizes than they reach by themselves, with walls or without:
-  /// by which factor.
-  std::function<double(const void*, const SizeDistribution& radii, int dimension, bool has_walls)> gain = {};
+  /// Of one that makes denser packings of these sizes than they reach by themselves: by which factor.
+  std::function<double(const void*, const SizeDistribution& radii, int dimension, const WallsAround&)> gain =
+      {};
   /// Of one that places spheres which then stay: the packing fraction at which no more find room.
   std::function<double(const void*, const EmptyBed&)> full = {};
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -129,6 +130,25 @@ TEST(SizeExchange, WidensClassesUntilStepsCrossTheGaps) {
   EXPECT_FALSE(exchange.is_widened());
 }
 
+TEST(SizeExchange, CrossesAFewSpheresBetweenTwoClasses) {
+  for (const std::size_t few : {1u, 5u, 6u}) {
+    SCOPED_TRACE(few);
+    std::vector<double> given = of_classes({1.0, 1.16}, 100);
+    given.insert(given.begin() + 100, few, 1.08);
+    SizeExchange exchange(given, 3);
+    ASSERT_TRUE(exchange.is_of_use());
+    ASSERT_TRUE(exchange.widen(1));
+    const std::vector<float>& radii = exchange.radii();
+    for (std::size_t i = 1; i < radii.size(); ++i) {
+      EXPECT_GE(radii[i], radii[i - 1] * (1 - 1e-6f)) << i;
+      EXPECT_LT(radii[i], radii[i - 1] * (1 + SizeExchange::longest_way)) << i;
+    }
+  }
+  std::vector<double> far = of_classes({1.0, 1.4}, 100);
+  far.insert(far.end(), 3, 1.2);
+  EXPECT_FALSE(SizeExchange(far, 3).widen(1)) << "the classes are too far from each other";
+}
+
 TEST(SizeExchange, LeavesSizesWithoutGapsAsTheyAre) {
   SizeExchange exchange(lognormal_radii(500, 0.3), 3);
   EXPECT_FALSE(exchange.widen(1));
@@ -136,16 +156,35 @@ TEST(SizeExchange, LeavesSizesWithoutGapsAsTheyAre) {
 }
 
 TEST(SizeExchange, ExpectsLessTheFartherClassesAreApart) {
-  double before = SizeExchange(lognormal_radii(600, 0.1), 3).gain(false);
+  double before = SizeExchange(lognormal_radii(600, 0.1), 3).gain({});
   for (const double ratio : {1.05, 1.1, 1.2, 1.25}) {
     SCOPED_TRACE(ratio);
     const double gain =
-        SizeExchange(of_classes({1.0, ratio, ratio * ratio, std::pow(ratio, 3)}, 150), 3).gain(false);
+        SizeExchange(of_classes({1.0, ratio, ratio * ratio, std::pow(ratio, 3)}, 150), 3).gain({});
     EXPECT_GT(gain, 1);
     EXPECT_LT(gain, before);
     before = gain;
   }
-  EXPECT_EQ(SizeExchange(of_classes({1.0, 1.5}, 150), 3).gain(false), 1);
+  EXPECT_EQ(SizeExchange(of_classes({1.0, 1.5}, 150), 3).gain({}), 1);
+}
+
+TEST(SizeExchange, ExpectsLessOfUnequalSharesAndOfFewSpheresInABed) {
+  const auto of_shares = [](std::size_t first, std::size_t second) {
+    std::vector<double> radii(first, 1.0);
+    radii.insert(radii.end(), second, 1.1);
+    return SizeExchange(radii, 3).gain({});
+  };
+  EXPECT_GT(of_shares(500, 500) - 1, 3 * (of_shares(950, 50) - 1));
+  EXPECT_GT(of_shares(950, 50), 1);
+  const SizeExchange sizes(lognormal_radii(600, 0.1), 3);
+  const auto in_bed = [&](double volume_in_spheres, bool is_round) {
+    return sizes.gain(
+        {.has_walls = true, .in_bed = true, .is_round = is_round, .volume_in_spheres = volume_in_spheres});
+  };
+  EXPECT_LT(in_bed(300, true), in_bed(300, false));
+  EXPECT_LT(in_bed(300, false), in_bed(3000, false));
+  EXPECT_NEAR(in_bed(1e9, true), sizes.gain({.has_walls = true}), 1e-7);
+  EXPECT_GT(in_bed(1, true), 1) << "it is never a loss";
 }
 
 TEST(SizeExchange, HasEveryClassAsItIsAtTheEnd) {
@@ -330,6 +369,34 @@ TEST(Exchange, FillsAContainerWithMoreOfTheDrawnSequence) {
   const Packing exchanged = run(testing::plan_of(box + "exchange = true\n"));
   EXPECT_EQ(exchanged.outcome, Outcome::converged) << exchanged.reason;
   EXPECT_GT(exchanged.packing_fraction(), ordinary.packing_fraction() + 0.02);
+}
+
+std::string in_ball(double radius, int seed, const std::string& sizes, const std::string& keys) {
+  return fmt::format(
+      "seed = {}\n[container]\nkind = \"sphere\"\nradius = {}\n[spheres]\nfill = true\nradius = "
+      "{}\n[[stage]]\ndo = \"relax\"\n{}\n",
+      seed, radius, sizes, keys);
+}
+
+/// Classes that are hardly mixed, for which an exchange may find nothing, and sizes for which it does.
+TEST(Exchange, NeverHoldsFewerInASmallBallThanWithoutIt) {
+  for (const std::string sizes : {"{ distribution = \"classes\", values = [1, 1.1], shares = [0.95, 0.05] }",
+                                  "{ distribution = \"classes\", values = [1, 1.1], shares = [1, 1] }",
+                                  "{ distribution = \"lognormal\", median = 1.0, sigma = 0.01 }",
+                                  "{ distribution = \"lognormal\", median = 1.0, sigma = 0.1 }"})
+    for (const int seed : {1, 3}) {
+      SCOPED_TRACE(sizes);
+      const Packing ordinary = run(testing::plan_of(in_ball(7, seed, sizes, "")));
+      const Plan plan = testing::plan_of(in_ball(7, seed, sizes, "exchange = true"));
+      const Packing exchanged = run(plan);
+      EXPECT_GE(exchanged.spheres.size(), ordinary.spheres.size());
+      EXPECT_GE(exchanged.packing_fraction(), ordinary.packing_fraction());
+      EXPECT_GT(exchanged.packing_fraction(), plan.attainable_packing_fraction - 0.03);
+      if (exchanged.spheres.size() == ordinary.spheres.size())
+        EXPECT_NE(exchanged.reason.find("an exchange of sizes has made no room"), std::string::npos);
+      else
+        EXPECT_NE(exchanged.reason.find("an exchange of sizes has made room"), std::string::npos);
+    }
 }
 
 }  // namespace size_exchange_test
