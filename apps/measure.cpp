@@ -246,10 +246,13 @@ int measure_folder(const MeasureCall& call) try {
   bar.clear();
   if (!call.local.empty()) {
     if (!measured.local)
-      throw Error(ErrorCode::bad_argument,
-                  is_tilted(packing.domain)
-                      ? "--local: local packing fractions are not known in tilted boxes; leave it out"
-                      : "--local: local packing fractions are those of spheres in two or three dimensions");
+      throw Error(
+          ErrorCode::bad_argument,
+          is_repeated_mesh(packing.domain)
+              ? "--local: local packing fractions are not known in a mesh that repeats itself; leave it out"
+          : is_tilted(packing.domain)
+              ? "--local: local packing fractions are not known in tilted boxes; leave it out"
+              : "--local: local packing fractions are those of spheres in two or three dimensions");
     write_local(packing, *measured.local, call.local);
   }
   if (!call.contacts.empty())

@@ -62,7 +62,9 @@ std::string opencascade_remedy() {
   const bool is_there = std::ranges::any_of(
       places, [&](const std::filesystem::path& module) { return is_trusted(module, own); });
   return is_there ? "install its libraries, on Debian by apt install " BERNAL_OPENCASCADE_PACKAGE
-                  : "install " + places.front().filename().string() + ", which the Debian package bernal has";
+                  : "there is no " + places.front().string() +
+                        ", which a copy of the program alone leaves behind: link to the installed one, or "
+                        "install the Debian package bernal";
 }
 
 }  // namespace bernal::cad

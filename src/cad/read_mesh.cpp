@@ -155,6 +155,9 @@ void take_interior(Mesh& mesh, const MeshFile& options, double tolerance, std::v
 
 /// The remedy for the first problem in the report, if no line was found that helps.
 std::string_view remedy(const MeshReport& report, const MeshFile& options) {
+  if (report.open_edges > 0 && std::ranges::count(options.periodic, true) > 1)
+    return "ends of a surface that repeats itself along several axes share rims, which no flat lid closes; "
+           "give one period as a closed solid, with its ends";
   if (report.open_edges > 0 && options.repeats())
     return "the openings that \"periodic\" means lie flat in its two end planes, and these do not; close "
            "them in CAD, or cut the part straight across the axis";
@@ -233,6 +236,10 @@ ImportedMesh import(const MeshFile& options, const ImportFor& purpose) {
                                   options.file.filename().string()));
   if (options.true_surface && options.repeats())
     throw OptionError("periodic", "is for triangles, and \"true_surface\" is not; take one of the two out");
+  if (!options.obstacles.empty() && options.repeats())
+    throw OptionError("obstacles",
+                      "are for a container that ends, and \"periodic\" repeats this one; take one of the two "
+                      "out, or cut the obstacles out of the part in CAD");
   if (options.true_surface && !cad::opencascade_reads(options.file))
     throw OptionError(
         "true_surface",

@@ -69,9 +69,11 @@ StageEnd finish_in_bed(StageEnd end, double polish, SpheresInBed& in_bed, Report
     in_bed.replace_bed(std::move(polished));
     if (jammed.held_volume < 0.5) {
       report.missed = fmt::format(
-          "only {} of {} spheres hold each other: some are wedged in, mostly where the container is about as "
-          "narrow as they are large, before sizes have grown so far that the others touch",
-          jammed.held, spheres.size());
+          "{} wedged in, mostly where the container is about as narrow as they are large, before sizes have "
+          "grown so far that the others touch",
+          jammed.held == 0
+              ? fmt::format("none of the {} spheres hold each other: some are", spheres.size())
+              : fmt::format("only {} of {} spheres hold each other: some are", jammed.held, spheres.size()));
       return StageEnd::hit_limit;
     }
     const double gap = std::max(polish, closest + 2 * room);
@@ -79,6 +81,13 @@ StageEnd finish_in_bed(StageEnd end, double polish, SpheresInBed& in_bed, Report
     const std::optional<std::string> open =
         what_is_open(gap, in_bed.bed().dimension(), now.size(), symmetries,
                      contacts_at(gap, now, in_bed.bed().container()));
+    if (!open && polish < least_overlap && jammed.end == StageEnd::converged) {
+      report.missed = fmt::format(
+          "contacts are closed to {:.2g} and not to {:g}: in a container spheres keep "
+          "that off each other and the walls",
+          gap, polish);
+      return StageEnd::hit_limit;
+    }
     return end_of_polish(jammed.end == StageEnd::converged ? end : jammed.end, polish, open, report);
   }
   report.missed = "the spheres could not be polished";

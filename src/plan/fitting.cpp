@@ -72,10 +72,21 @@ double shortest_period(const Domain& container) {
 void require_long_periods(const Scene& scene, const Domain& container, double radius) {
   const double least = Bed::least_period * 2 * radius, shortest = shortest_period(container);
   if (shortest >= least) return;
+  const bool has_limit = std::visit(
+      [](const auto& kind) {
+        return requires { kind.max; };
+      },
+      scene.sizes);
+  // Rounded down, so that what is said is enough.
+  const double largest = (scene.sizes_are_diameters ? 2 : 1) * shortest / (Bed::least_period * 2);
+  const double step = std::pow(10.0, std::floor(std::log10(largest)) - 3);
   throw Error(ErrorCode::bad_scene,
               fmt::format("the container repeats itself every {:.6g} {}, in which spheres meet two images of "
-                          "others; for these sizes make that at least {:.6g} {}",
-                          shortest, name_of(scene.unit), least, name_of(scene.unit)),
+                          "others; for these sizes make that at least {:.6g} {}{}",
+                          shortest, name_of(scene.unit), least, name_of(scene.unit),
+                          has_limit ? fmt::format(", or give them a \"max\" of {:.4g} {}",
+                                                  step * std::floor(largest / step), name_of(scene.unit))
+                                    : ""),
               scene.container.locations.whole);
 }
 

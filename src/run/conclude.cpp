@@ -200,10 +200,10 @@ void tell_bulk_density(Packing& packing, const Reporter& report) {
                                 packing.bulk_density->reached, packing.bulk_density->asked);
 }
 
-std::string resized(double size_scale) {
-  return size_scale == 1
-             ? ""
-             : fmt::format("; all sizes are {:.9g} times those drawn, so that they jam", size_scale);
+std::string resized(double size_scale, bool jams) {
+  return size_scale == 1 ? ""
+                         : fmt::format("; all sizes are {:.9g} times those drawn{}", size_scale,
+                                       jams ? ", so that they jam" : "");
 }
 
 /// What was left out of the drawn sequence.
@@ -282,7 +282,7 @@ void conclude(Packing& packing, const SpheresOfRun& spheres, const Reporter& rep
   packing.outcome = conclusion.outcome;
   packing.reason =
       conclusion.reason + (in_bed && !report.account.empty() ? "; " + report.account : std::string()) +
-      (in_bed ? resized(packing.size_scale) : std::string()) +
+      (in_bed ? resized(packing.size_scale, report.missed.empty()) : std::string()) +
       (in_bed && end != StageEnd::cancelled ? left_out(packing, supply, ending.unit) : std::string());
   if (!packing.spheres.empty()) tell_bulk_density(packing, report);
 }

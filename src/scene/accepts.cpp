@@ -159,7 +159,7 @@ std::string expectation(const Key& key, const std::optional<Value>& given) {
   if (key.type == Type::integer)
     return range.max > 0x1p53 ? fmt::format("a whole number of at least {}", range.min)
                               : fmt::format("a whole number from {:.0f} to {:.0f}", range.min, range.max);
-  if (key.type == Type::names && !key.words.empty()) return fmt::format("an array of {}", words);
+  if (key.type == Type::names && !key.words.empty()) return fmt::format("{} or an array of them", words);
   if (key.type == Type::position && !key.words.empty()) return fmt::format("a point [x, y, z] or {}", words);
   if (key.type == Type::distribution && !key.words.empty())
     return fmt::format("{} or {}", rules.at(key.type).kind, words);

@@ -1,6 +1,7 @@
 // Meshes that repeat themselves: how they are read, their walls, and their certificate.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -379,6 +380,35 @@ TEST_F(ReadChannel, RefusesEndsThatDoNotMatch) {
   EXPECT_NE(refusal(turned).find("do not match"), std::string::npos) << refusal(turned);
   EXPECT_NE(refusal(corrugated_channel(0, 1.0 / 64)).find("less than a thirtieth"), std::string::npos);
   EXPECT_EQ(refusal(corrugated_channel(0, 1.0 / 8)), "");
+}
+
+/// Of a slit without its sides one rim runs around four ends, of which no lid is flat.
+TEST_F(ReadChannel, SaysThatEndsAlongSeveralAxesHaveToBeThere) {
+  const Mesh slit = test::box_mesh({0, 0, 0}, {3, 2, 1});
+  EXPECT_EQ(refusal(slit, {true, true, false}), "");
+  Mesh plates = slit;
+  std::erase_if(plates.triangles, [&](const auto& t) {
+    return slit.vertices[t[0]][2] != slit.vertices[t[1]][2] ||
+           slit.vertices[t[1]][2] != slit.vertices[t[2]][2];
+  });
+  ASSERT_EQ(plates.triangles.size(), 4u);
+  const std::string refused = refusal(plates, {true, true, false});
+  EXPECT_NE(refused.find("give one period as a closed solid, with its ends"), std::string::npos) << refused;
+}
+
+TEST_F(ReadChannel, KnowsNoHolesBesideItsEndsAndNoObstacles) {
+  std::ofstream(folder.path() / "channel.off") << as_off_file(test::open_channel(corrugated_channel()));
+  MeshFile file{
+      .file = folder.path() / "channel.off", .repair = {Repair::holes}, .periodic = {false, false, true}};
+  const std::vector<std::string> repairs = read_container_mesh(file, {}).report.repairs;
+  EXPECT_EQ(std::ranges::count(repairs, "no holes to close beside the ends that \"periodic\" means"), 1);
+  file.obstacles = {folder.path() / "channel.off"};
+  try {
+    read_container_mesh(file, {});
+    FAIL() << "accepted";
+  } catch (const OptionError& error) {
+    EXPECT_EQ(error.option, "obstacles");
+  }
 }
 
 TEST_F(ReadChannel, KnowsLatticeUnits) {

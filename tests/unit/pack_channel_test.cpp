@@ -292,6 +292,11 @@ TEST_F(PackChannel, RefusesWhatDoesNotKnowIt) {
       std::string::npos);
   // The period is too short for spheres that would meet two images of another.
   expect_refused("diameter = 1.4\n", "repeats itself every 3 mm");
+  expect_refused("diameter = { distribution = \"lognormal\", median = 0.3, sigma = 0.5 }\n",
+                 "or give them a \"max\" of 1 mm");
+  EXPECT_NE(
+      refusal("tube.off", "diameter = 0.3\n", "true").find("must be \"x\" or \"y\" or \"z\" or an array"),
+      std::string::npos);
   // Along the axis nothing holds them.
   expect_refused(
       "diameter = 0.3\n[[stage]]\ndo = \"insert\"\n[[stage]]\ndo = \"compress\"\ndirection = [0, 0, -1]\n",

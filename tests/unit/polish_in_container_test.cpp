@@ -78,12 +78,24 @@ TEST(PolishInContainer, LeavesACadPartIsostatic) {
       polished("kind = \"mesh\"\nfile = \"" BERNAL_DATA "/meshes/lib3mf_helix.stl\"\nunit = \"mm\"\n"));
 }
 
+/// Spheres keep their skin off each other, which is more.
+TEST(PolishInContainer, SaysWhatIsReachedInPlaceOfTooSmallAGap) {
+  const Packing packing =
+      run(testing::plan_of("[container]\nkind = \"box\"\nsize = [6.0, 6.0, 6.0]\n[spheres]\nradius = "
+                           "0.5\n[[stage]]\ndo = \"relax\"\npolish = 1e-12\n"));
+  EXPECT_EQ(packing.outcome, Outcome::hit_limit);
+  EXPECT_NE(packing.reason.find("and not to 1e-12"), std::string::npos) << packing.reason;
+  EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
+}
+
 TEST(PolishInContainer, SaysThatSpheresAreWedgedInOneByOne) {
   const Packing packing =
       run(testing::plan_of("[container]\nkind = \"box\"\nsize = [6.0, 6.0, 1.01]\n[spheres]\nradius = "
                            "0.5\ncount = 15\n[[stage]]\ndo = \"relax\"\npolish = 1e-8\n"));
   EXPECT_EQ(packing.outcome, Outcome::hit_limit);
-  EXPECT_NE(packing.reason.find("only 0 of 15 spheres hold each other"), std::string::npos) << packing.reason;
+  EXPECT_NE(packing.reason.find("none of the 15 spheres hold each other"), std::string::npos)
+      << packing.reason;
+  EXPECT_EQ(packing.reason.find("so that they jam"), std::string::npos) << packing.reason;
   EXPECT_NEAR(packing.size_scale, 1.01, 1e-6);
   EXPECT_TRUE(certify(packing.spheres, packing.domain).certified);
 }

@@ -57,7 +57,7 @@ void find_crossings(const Mesh& mesh, const std::vector<HoleLoop>& holes, const 
 
 RepairedMesh close_holes(Mesh mesh, double widest) {
   const MeshTopology before = topology_of(mesh);
-  if (before.open_edges == 0) return {std::move(mesh), "no holes to close"};
+  if (before.open_edges == 0) return {std::move(mesh), std::string(no_holes)};
   if (orient_consistently(mesh, before) == no_index)
     return {std::move(mesh), "holes stay open: the surface is one-sided and has no inside"};
   const MeshTopology topology = topology_of(mesh);

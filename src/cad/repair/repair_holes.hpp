@@ -1,4 +1,6 @@
 #pragma once
+#include <string_view>
+
 #include "cad/repair/repaired_mesh.hpp"
 
 namespace bernal::cad {
@@ -9,5 +11,7 @@ namespace bernal::cad {
 /// agree; a one-sided surface does not change. The given faces come first in the result. Cost: O(T log² T),
 /// and for holes see Patcher::fill.
 RepairedMesh close_holes(Mesh mesh, double widest);
+/// What it says then.
+inline constexpr std::string_view no_holes = "no holes to close";
 
 }  // namespace bernal::cad

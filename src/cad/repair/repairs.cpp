@@ -64,6 +64,8 @@ void Repairs::apply(const RepairEntry& entry) {
   RepairedMesh repaired = repair_in_cage(mesh_, purpose_.repair_seconds,
                                          [&] { return entry.repaired(mesh_, options_, purpose_); });
   done_.push_back(repaired.done);
+  if (options_.repeats() && repaired.done == no_holes)
+    done_.back() += " beside the ends that \"periodic\" means";
   if (repaired.mesh.triangles == mesh_.triangles && repaired.mesh.vertices == mesh_.vertices) return;
   any = true;
   if (repaired.mesh.triangles.empty()) return;
