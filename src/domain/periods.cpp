@@ -5,6 +5,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/domain/domain.hpp"
 #include "core/every_dimension.hpp"
+#include "domain/without_walls.hpp"
 
 // The periods of domains, and the tilt of boxes.
 
@@ -99,6 +100,24 @@ Boundary<3> boundary_in_space(const Domain& domain) {
   boundary.edges.head<2>() = own.edges;
   boundary.origin.head<2>() = own.origin;
   return boundary;
+}
+
+Box without_walls(const Domain& domain) {
+  const Bounds<dynamic> bounds = bounds_of<dynamic>(domain);
+  const int dimension = dimension_of(domain);
+  Box box{bounds.lower - bounds.size(), 3 * bounds.size(),
+          std::vector<bool>(static_cast<std::size_t>(dimension))};
+  with_dimension(dimension, EveryDimension{}, [&](auto d) {
+    const auto metric = tilted_boundary_of<decltype(d)::value>(domain);
+    box.tilt = metric.tilt;
+    for (int k = 0; k < dimension; ++k) {
+      if (!metric.repeats(k)) continue;
+      box.periodic[static_cast<std::size_t>(k)] = true;
+      box.corner[k] = metric.origin[k];
+      box.size[k] = metric.edges[k];
+    }
+  });
+  return box;
 }
 
 void wrap(Spheres<dynamic>& spheres, const Domain& domain) {

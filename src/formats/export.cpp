@@ -10,6 +10,7 @@
 #include "bernal/scene/sphere_layers.hpp"
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
+#include "domain/without_walls.hpp"
 #include "files/seal.hpp"
 #include "formats/format.hpp"
 #include "formats/text_file.hpp"
@@ -99,23 +100,6 @@ void require_free_places(const Packing& packing, const Output& output, const fs:
                             names[0]));
 }
 
-/// The domain with its walls moved out of reach, so that a certificate concerns pairs only.
-Domain without_walls(const Domain& domain) {
-  const Bounds<dynamic> bounds = bounds_of<dynamic>(domain);
-  Box box{bounds.lower, bounds.size(), std::vector<bool>(static_cast<std::size_t>(dimension_of(domain)))};
-  const auto* given = std::get_if<Box>(&domain);
-  if (given) box.tilt = given->tilt;
-  const Boundary<3> boundary = given ? Boundary<3>() : boundary_in_space(domain);
-  for (int k = 0; k < box.dimension(); ++k) {
-    const bool repeats = given ? given->repeats(k) : boundary.repeats(k);
-    box.periodic[static_cast<std::size_t>(k)] = repeats;
-    if (repeats) continue;
-    box.corner[k] -= box.size[k];
-    box.size[k] *= 3;
-  }
-  return box;
-}
-
 /// Over pairs, ignoring walls.
 double largest_overlap(const Spheres<dynamic>& spheres, const Domain& domain, const Monitor& monitor) {
   const Certificate certificate = certify(spheres, without_walls(domain), {.monitor = monitor});
@@ -136,8 +120,9 @@ std::string overlap_text(const Packing& packing, double overlap) {
 void find_faults(Exported& file, const Format& format, const Monitor& monitor) {
   const Packing& packing = file.packing;
   const bool with_walls = format.sizes == "solids" || format.sizes == "triangles";
-  const Certificate certificate = certify(
-      packing.spheres, with_walls ? packing.domain : without_walls(packing.domain), {.monitor = monitor});
+  const Certificate certificate =
+      certify(packing.spheres, with_walls ? packing.domain : Domain(without_walls(packing.domain)),
+              {.monitor = monitor});
   if (certificate.cancelled) throw Cancelled();
   file.overlap = certificate.max_overlap;
   if (!with_walls) return;

@@ -12,6 +12,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/scene/sphere_classes.hpp"
 #include "bernal/version.hpp"
+#include "domain/without_walls.hpp"
 #include "formats/format.hpp"
 #include "scene/toml_text.hpp"
 
@@ -223,13 +224,8 @@ double Exported::largest_radius() const {
 
 std::array<bool, 3> Exported::periods() const {
   std::array<bool, 3> all{};
-  if (const auto* box = std::get_if<Box>(&domain)) {
-    for (int k = 0; k < std::min(3, box->dimension()); ++k)
-      all[static_cast<std::size_t>(k)] = box->repeats(k);
-    return all;
-  }
-  const Boundary<3> boundary = boundary_in_space(domain);
-  for (int k = 0; k < 3; ++k) all[static_cast<std::size_t>(k)] = boundary.repeats(k);
+  const std::vector<bool> own = without_walls(domain).periodic;
+  std::copy_n(own.begin(), std::min(all.size(), own.size()), all.begin());
   return all;
 }
 

@@ -10,7 +10,7 @@
 #include "bernal/core/error.hpp"
 #include "bernal/plan/plan.hpp"
 #include "bernal/report/describe.hpp"
-#include "scene/tilted_box.hpp"
+#include "scene/repetition.hpp"
 
 namespace bernal {
 namespace {

@@ -13,10 +13,9 @@
 #include "scene/layers_of_scene.hpp"
 #include "scene/output_table.hpp"
 #include "scene/porosity.hpp"
-#include "scene/repeated_mesh.hpp"
+#include "scene/repetition.hpp"
 #include "scene/scene_entries.hpp"
 #include "scene/stage_table.hpp"
-#include "scene/tilted_box.hpp"
 #include "scene/toml_text.hpp"
 #include "scene/zones.hpp"
 
@@ -283,7 +282,6 @@ void complete(Scene& scene) {
   complete_stages(scene);
   complete_zones(scene);
   check_insides(scene);
-  schema::require_tilt_known(scene);
   schema::require_repetition_known(scene);
   if (scene.engine)
     check(schema::entry_of(*scene.engine), schema::options_of(std::as_const(*scene.engine)),

@@ -8,8 +8,7 @@
 #include "bernal/core/text.hpp"
 #include "scene/layers_of_scene.hpp"
 #include "scene/output_table.hpp"
-#include "scene/repeated_mesh.hpp"
-#include "scene/tilted_box.hpp"
+#include "scene/repetition.hpp"
 #include "scene/toml_text.hpp"
 
 namespace bernal {

@@ -1,8 +1,8 @@
 #include "scene/scene_entries.hpp"
 
+#include "scene/repetition.hpp"
 #include "scene/scale_entry.hpp"
 #include "scene/spheres_rules.hpp"
-#include "scene/tilted_box.hpp"
 #include "scene/toml_text.hpp"
 
 #include <algorithm>

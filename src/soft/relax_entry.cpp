@@ -3,7 +3,7 @@
 
 #include "jam/polish.hpp"
 #include "scene/layers_of_scene.hpp"
-#include "scene/tilted_box.hpp"
+#include "scene/repetition.hpp"
 #include "soft/ground.hpp"
 #include "soft/relax.hpp"
 #include "soft/size_exchange.hpp"

@@ -33,6 +33,9 @@ constexpr std::size_t many_to_fill = 20000;
 /// Where at least this share of the spheres is within three of its radii of a wall, pushing in more finds up
 /// to two in a hundred; elsewhere it finds nothing after they have shrunk.
 constexpr double share_near_walls = 0.7;
+/// Fewer spheres take no time that would be worth saving, and next to all of them are near walls, where each
+/// one more counts.
+constexpr std::size_t many_to_hurry = 1000;
 /// After sizes are exchanged: as `taken_out`, and exchanges each time.
 constexpr double taken_out_dealing = 0.3;
 constexpr int exchanges_to_settle = 50;
@@ -103,9 +106,10 @@ class Relaxation {
   }
 
  private:
-  /// Wide, unless spheres are to be as dense as they can.
+  /// Wide, unless spheres are few or are to be as dense as they can.
   double first_margin() const {
     const bool densest = in_bed_.task.target.fill || options_.exchange || snug_ ||
+                         in_bed_.target_count() < many_to_hurry ||
                          in_bed_.target_count() > in_bed_.count_filling(in_bed_.task.attainable);
     return densest ? 0 : ContainerGround::wide_margin;
   }

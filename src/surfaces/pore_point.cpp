@@ -3,6 +3,7 @@
 
 #include "bernal/verify/certificate.hpp"
 #include "core/parallel.hpp"
+#include "domain/without_walls.hpp"
 #include "surfaces/surfaces.hpp"
 
 namespace bernal {
@@ -46,24 +47,10 @@ class Gaps {
   double farthest_;  ///< if there are no spheres
 };
 
-/// The domain with its walls out of reach.
-Box periods_of(const Domain& domain) {
-  const Boundary<3> boundary = boundary_of<3>(domain);
-  const Bounds<3> bounds = bounds_of(domain);
-  Box box{bounds.lower - bounds.size(), 3 * bounds.size(), {false, false, false}};
-  for (int k = 0; k < 3; ++k) {
-    if (!boundary.repeats(k)) continue;
-    box.periodic[static_cast<std::size_t>(k)] = true;
-    box.corner[k] = boundary.origin[k];
-    box.size[k] = boundary.edges[k];
-  }
-  return box;
-}
-
 /// Whether the ball meets no sphere or image.
 bool clears_spheres(const PorePoint& ball, const Spheres<dynamic>& spheres, const Domain& domain) {
   const Boundary<3> boundary = boundary_of<3>(domain);
-  const Box box = periods_of(domain);
+  const Box box = without_walls(domain);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const Vector<3> c(spheres.x[0][i], spheres.x[1][i], spheres.x[2][i]);
     // Only near spheres and nearest images: the rest is too far to need the certificate.

@@ -1,4 +1,4 @@
-#include "scene/tilted_box.hpp"
+#include "scene/repetition.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,11 @@ namespace bernal::schema {
 bool is_tilted(const Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
   return box && std::ranges::any_of(box->tilt, [](double length) { return length != 0; });
+}
+
+bool is_repeated_mesh(const Scene& scene) {
+  const auto* mesh = std::get_if<MeshFile>(&scene.container);
+  return mesh && mesh->repeats();
 }
 
 void tilt_rule(const PeriodicBox& box, const Section& section) {
@@ -39,20 +44,28 @@ void tilt_rule(const PeriodicBox& box, const Section& section) {
                                          most_slender));
 }
 
-void require_tilt_known(const Scene& scene) {
-  if (!is_tilted(scene)) return;
+void require_repetition_known(const Scene& scene) {
+  const bool tilted = is_tilted(scene), mesh = is_repeated_mesh(scene);
+  if (!tilted && !mesh) return;
+  const char* const key = tilted ? "tilt" : "periodic";
+  const Locations& container = scene.container.locations;
   const auto refuse = [&](std::string_view what, const Location& where) {
     throw Error(ErrorCode::bad_scene,
-                fmt::format("{} upright periodic boxes only, and this one is tilted; leave out \"tilt\" in "
-                            "[container], or that",
-                            what),
+                tilted ? fmt::format("{} upright periodic boxes only, and this one is tilted; leave out "
+                                     "\"tilt\" in [container], or that",
+                                     what)
+                       : fmt::format("{} no mesh that repeats itself; leave out \"periodic\" in [container], "
+                                     "which closes its ends, or that",
+                                     what),
                 where);
   };
   if (scene.engine) refuse("[engine] knows", scene.engine->locations.whole);
-  if (!scene.zones.empty()) refuse("zones know", scene.container.locations.of("tilt"));
-  if (scene.cells) refuse("\"cells\" of [spheres] know", scene.locations.of("cells"));
-  if (!scene.inside.empty()) refuse("what lies \"inside\" of spheres knows", scene.locations.of("inside"));
+  if (!scene.zones.empty()) refuse("zones know", container.of(key));
   if (scene.largest) refuse("the size \"largest\" knows", scene.locations.whole);
+  if (mesh && !scene.container.obstacles.empty()) refuse("\"obstacles\" know", container.of("obstacles"));
+  if (tilted && scene.cells) refuse("\"cells\" of [spheres] know", scene.locations.of("cells"));
+  if (tilted && !scene.inside.empty())
+    refuse("what lies \"inside\" of spheres knows", scene.locations.of("inside"));
 }
 
 }  // namespace bernal::schema
