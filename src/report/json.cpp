@@ -51,7 +51,7 @@ static void to_json(Json& json, const Certificate& c) {
           {"overlapping_pairs", c.overlapping_pairs},
           {"protruding_spheres", c.protruding_spheres},
           {"worst_pair", c.worst_pair},
-          {"max_overlap", c.worst_pair ? Json(c.max_overlap) : Json()},
+          {"max_overlap", c.max_overlap},
           {"worst_wall", c.worst_wall},
           {"min_wall_gap", c.worst_wall ? Json(c.min_wall_gap) : Json()},
           {"gap", c.gap},
@@ -164,7 +164,7 @@ void add_proof(Json& json, const AnyReport& report) {
   const Packing& packing = report.packing;
   const Certificate& certificate = report.certificate;
   const Json of_certificate = certificate;
-  json.update({{"max_overlap", of_certificate.at("max_overlap")},
+  json.update({{"max_overlap", certificate.max_overlap},
                {"min_wall_gap", of_certificate.at("min_wall_gap")},
                {"gap", certificate.gap},
                {"wall_gap", certificate.wall_gap},

@@ -26,7 +26,6 @@ TEST(CertificateJson, HasNullWhereThereIsNothing) {
   const auto json = nlohmann::json::parse(certificate_as_json(Certificate{}));
   EXPECT_EQ(json.at("certified"), false);
   EXPECT_TRUE(json.at("worst_pair").is_null());
-  EXPECT_TRUE(json.at("max_overlap").is_null());
   EXPECT_TRUE(json.at("worst_wall").is_null());
   EXPECT_TRUE(json.at("min_wall_gap").is_null());
 

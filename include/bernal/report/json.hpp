@@ -16,13 +16,12 @@
 namespace bernal {
 
 /// The certificate as a JSON object, indented by two spaces a level: what `verify --json` prints, and
-/// `certificate` in report.json. Its keys are the members of Certificate. `worst_pair` and `max_overlap` are
-/// null if there are no two spheres or images; `worst_pair` holds one index twice for a sphere and its own
-/// image; `worst_wall` and `min_wall_gap` are null if there are no walls or no spheres. `overlaps` and
-/// `protrusions` are present if a list was requested and has entries. Numbers that are not finite become
-/// null. `settled` is present if a `Rest` is given; its `list`, of spheres with centre and radius, if it has
-/// entries. `misplaced`, the spheres that are not in the place of their zone, is present if `ZonesInPlace` is
-/// given.
+/// `certificate` in report.json. Its keys are the members of Certificate. `worst_pair` is null if there are
+/// no two spheres or images, and holds one index twice for a sphere and its own image; `worst_wall` and
+/// `min_wall_gap` are null if there are no walls or no spheres. `overlaps` and `protrusions` are present if a
+/// list was requested and has entries. Numbers that are not finite become null. `settled` is present if a
+/// `Rest` is given; its `list`, of spheres with centre and radius, if it has entries. `misplaced`, the
+/// spheres that are not in the place of their zone, is present if `ZonesInPlace` is given.
 std::string certificate_as_json(const Certificate&, const std::optional<ZonesInPlace>& = {},
                                 const std::optional<Rest>& = {},
                                 const Spheres<dynamic>& = Spheres<dynamic>(3));
