@@ -100,6 +100,7 @@ class Relaxation {
       if (has_dealt_ && !over_) push_in();
       end = keep_denser(ordinary, limited);
     }
+    if (cancelled_ && step < Step::push_in) put_in_bed();
     report_.effects["neighbour lists"] += crowd_.lists_built();
     report_.effects["relaxation"].calls += static_cast<std::uint64_t>(crowd_.sweeps());
     return cancelled_ ? StageEnd::cancelled : end;
