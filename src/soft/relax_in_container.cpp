@@ -98,7 +98,7 @@ class Relaxation {
     }
     if (step == Step::push_in_more) {
       if (has_dealt_ && !over_) push_in();
-      end = keep_denser(ordinary, limited);
+      end = keep_denser(ordinary);
     }
     if (cancelled_ && step < Step::push_in) put_in_bed();
     report_.effects["neighbour lists"] += crowd_.lists_built();
@@ -146,12 +146,15 @@ class Relaxation {
   }
 
   /// What an exchange of sizes came to, unless more stands without it.
-  StageEnd keep_denser(const BedKeepsake& ordinary, bool limited) {
+  StageEnd keep_denser(const BedKeepsake& ordinary) {
     const auto is_denser = [&] { return in_bed_.bed().packing_fraction() > ordinary.packing_fraction(); };
-    StageEnd end = has_dealt_ ? stand(true, limited) : StageEnd::full;
-    if (has_dealt_ && !is_denser()) end = insert_what_else_fits(in_bed_, report_, end);
-    if (has_dealt_ && is_denser()) return end;
-    if (!cancelled_) report_.account = "an exchange of sizes has made no room";
+    if (has_dealt_) {
+      StageEnd end = stand(true, false);
+      if (!is_denser()) end = insert_what_else_fits(in_bed_, report_, end);
+      if (is_denser()) return end;
+    }
+    report_.account = cancelled_ ? "the exchange of sizes was not finished, and left no trace"
+                                 : "an exchange of sizes has made no room";
     in_bed_.put_back(ordinary.spheres());
     return StageEnd::full;
   }
@@ -240,7 +243,7 @@ class Relaxation {
   }
 
   /// Spheres that are free of overlap exchange their sizes, and more of the sequence come in as that makes
-  /// room. Where that comes to no good end, all is as it was.
+  /// room, or not: see `keep_denser`.
   void exchange() {
     const EffectTimer timer(report_.effects["exchange"]);
     Spheres<3> ordinary = crowd_.spheres();
@@ -257,15 +260,10 @@ class Relaxation {
     }
     sweeps_of_exchange_ += crowd_.sweeps() - sweeps_before;
     has_dealt_ = free && crowd_.size() > ordinary.size();
-    if (has_dealt_) {
+    if (has_dealt_)
       report_.account =
           fmt::format("an exchange of sizes has made room for {:.1f} % more",
                       100 * (in_bed_.volume_of(crowd_.spheres()) / in_bed_.volume_of(ordinary) - 1));
-      return;
-    }
-    report_.account = cancelled_ ? "the exchange of sizes was not finished, and left no trace"
-                                 : "an exchange of sizes has made no room";
-    crowd_.restore(ordinary);
   }
 
   /// Up to a little more than there is room for, unless all are there before.

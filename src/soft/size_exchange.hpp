@@ -67,9 +67,9 @@ class SizeExchange {
   int dimension_;
   std::vector<float> given_, given_logs_, radii_, log_radii_, inverse_areas_;  // by sphere
   std::vector<std::uint32_t> ascending_;                                       // spheres by radius
-  double spread_ = 0;  // standard deviation of ln r among sizes that exchanges can reach from each other
-  double ease_ = 1;    // share of the gain that gaps leave
-  double ease_in_bed_ = 1;
+  double spread_ = 0;       // standard deviation of ln r among sizes that exchanges can reach from each other
+  double ease_ = 1;         // share of the gain that gaps leave
+  double ease_in_bed_ = 1;  // the same in a bed
   std::vector<Bridge> bridges_;
   double share_ = -1;  // of the widening; negative: `radii` have not been asked for
   std::vector<float> pressures_;

@@ -187,4 +187,11 @@ inline Mesh void_of_gyroid(int cells) {
   return LevelSet(f, {cells, cells, cells}, Vector<3>::Zero(), 2.0 / cells).mesh();
 }
 
+/// Of rows x, y, z, r.
+inline Spheres<dynamic> spheres(const std::vector<std::array<double, 4>>& rows) {
+  Spheres<dynamic> made(3);
+  for (const auto& [x, y, z, r] : rows) made.push_back(Vector<3>(x, y, z), r);
+  return made;
+}
+
 }  // namespace bernal::test
