@@ -40,7 +40,9 @@ ClassesOfMesh classes_of_mesh(const Packing&);
 /// Where there are classes, "spheres_steel" and "surface_of_steel" stand for "spheres" and
 /// "surface_of_spheres"; where spheres have layers, "layer_kernel" stands for what is in them, and
 /// "surface_of_layer_kernel" for where it ends within others.
-MeshGroups groups_of(const VolumeMesh&, const Domain&, const ClassesOfMesh& = {});
+/// Faces of a `part` that is cut out have names: "x_lower" across an axis, else "face_1" and so on by number.
+MeshGroups groups_of(const VolumeMesh&, const Domain&, const ClassesOfMesh& = {},
+                     const ConvexPart* part = nullptr);
 
 /// "x_lower" for 0, "x_upper" for 1, up to "z_upper" for 5.
 std::string name_of_end(std::uint32_t face);

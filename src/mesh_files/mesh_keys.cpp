@@ -83,9 +83,9 @@ const std::vector<MeshKey>& mesh_keys() {
        .to = &Of::solids,
        .words = {"fluid", "all"}},
       {"cut",
-       "The part that is meshed, in the scene's unit: \"x = 1..4, y = 1..4, z = 0..5\"; its faces cut "
-       "spheres. With contact gap or shrink",
-       "BOX", &Of::cut},
+       "The part that is meshed, in the scene's unit: \"x = 1..4, y = 1..4, z = 0..5\", other planes that "
+       "close a convex part, or a file, part.stl; its faces cut spheres. With contact gap or shrink",
+       "PART", &Of::cut},
       {"unit", "Of lengths in the files: m, mm, …; the scene's if absent, and always m for snappy", "UNIT",
        &Of::unit},
       {"order", "2: elements with middles of edges, on the true spheres; 1 if absent", "N", &Of::order, 1, 2},

@@ -122,15 +122,15 @@ VolumeMesh filled_mesh(const ConformingSurface& surface, const Solids& solids, c
   const TetrahedraOptions tetrahedra{.for_gradients = mesh_writer_of(options.format).for_gradients};
   if (options.prisms == 0) return fill_with_layers(surface, tetrahedra, filled, monitor);
   PrismReport prisms;
-  VolumeMesh mesh =
-      fill_with_prisms(surface,
-                       {.layers = options.prisms,
-                        .height = options.prism_height,
-                        .growth = options.prism_growth,
-                        .per_gap = options.gap_edge,
-                        .sphere_edge = options.sphere_edge,
-                        .on_flat_walls = !solids.is_cut && !std::holds_alternative<Cylinder>(solids.domain)},
-                       tetrahedra, filled, prisms, monitor);
+  VolumeMesh mesh = fill_with_prisms(
+      surface,
+      {.layers = options.prisms,
+       .height = options.prism_height,
+       .growth = options.prism_growth,
+       .per_gap = options.gap_edge,
+       .sphere_edge = options.sphere_edge,
+       .on_flat_walls = !solids.is_cut() && !std::holds_alternative<Cylinder>(solids.domain)},
+      tetrahedra, filled, prisms, monitor);
   report.prisms = prisms.prisms;
   report.prism_ends = prisms.ends;
   report.prism_share = prisms.covered;
@@ -169,6 +169,10 @@ SurfaceMeshOptions sizes_of(const MeshFileOptions& options, bool is_surface) {
   return sizes;
 }
 
+MeshGroups named_groups(const VolumeMesh& mesh, const Solids& solids, const Packing& packing) {
+  return groups_of(mesh, solids.domain, classes_of_mesh(packing), solids.part ? &*solids.part : nullptr);
+}
+
 /// The mesh, its names, and what it is of.
 struct NamedMesh {
   VolumeMesh mesh;
@@ -196,7 +200,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
     report.meshed_porosity = surface.statement.meshed_fluid_volume / report.domain_volume;
     report.groups.push_back({"fluid", surface.statement.meshed_fluid_volume, surface.statement.fluid_volume});
     VolumeMesh mesh = without_filling(std::move(surface));
-    MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
+    MeshGroups groups = named_groups(mesh, solids, packing);
     return {std::move(mesh), std::move(groups), std::move(solids)};
   }
   FillReport filled;
@@ -213,7 +217,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
     report.straight_edges = edges.kept_straight;
     report.parts.push_back({"second order", curving.seconds()});
   }
-  MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
+  MeshGroups groups = named_groups(mesh, solids, packing);
   take_mesh(mesh, groups, report);
   return {std::move(mesh), std::move(groups), std::move(solids)};
 }

@@ -71,6 +71,7 @@ PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
           std::min({draft.options.sphere_edge * r, part.largest_edge, std::numbers::pi / 4 * circle.radius});
     sources.push_back({&circle, edge});
   }
+  if (!part.circles.empty() && number.ids().empty()) return {};  // nothing of the sphere is left
   for (const std::uint32_t id : number.ids()) patch.points.push_back(draft.made.vertices[id] - center);
   patch.size = [&](const Vector<3>& p) {
     double size = draft.size_on(part, center + p, is_cut_at_end, near);

@@ -24,6 +24,22 @@ NearFaces::NearFaces(const Bounds<3>& box, const Vector<3>& p) {
   }
 }
 
+NearFaces::NearFaces(const ConvexPart& part, const Vector<3>& p) {
+  for (const ConvexPart::Face& face : part.faces) {
+    const double above = face.keeps.normal.dot(p) - face.keeps.offset;
+    if (face.holds(p - above * face.keeps.normal, part)) distances_.push_back(std::abs(above));
+  }
+  const auto add = [&](const Vector<3>& d) {
+    distances_.push_back(std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+  };
+  for (const ConvexPart::Edge& edge : part.edges) {
+    const Vector<3>&a = part.corners[edge.corners[0]].point, &b = part.corners[edge.corners[1]].point;
+    const double along = (p - a).dot(edge.along);
+    if (along >= 0 && along <= (b - a).dot(edge.along)) add(p - a - along * edge.along);
+  }
+  for (const ConvexPart::Corner& corner : part.corners) add(p - corner.point);
+}
+
 double NearFaces::clear_radius(double radius, double gap) const {
   const double lowest = std::max(gap, least_cap), nearest = std::max(gap, least_distance);
   for (bool changed = true; changed;) {

@@ -7,8 +7,9 @@
 
 namespace bernal {
 
-/// How far a point is from the faces, edges and corners of a box that cuts spheres. A mesh is poor where a
-/// sphere is nearly touched: between two surfaces that nearly meet, and in the sharp edge of a low cap.
+/// How far a point is from the faces, edges and corners of a part or a period that cuts spheres. A mesh is
+/// poor where a sphere is nearly touched: between two surfaces that nearly meet, and in the sharp edge of a
+/// low cap.
 class NearFaces {
  public:
   /// The lowest cap that a face cuts off, in radii: the edge of a lower one is sharper than 20 degrees.
@@ -18,6 +19,7 @@ class NearFaces {
 
   /// Bounds at infinity are no faces.
   NearFaces(const Bounds<3>& box, const Vector<3>& point);
+  NearFaces(const ConvexPart&, const Vector<3>& point);
 
   /// The largest radius, up to the given one, with which a sphere around the point reaches beyond each of
   /// them by at least `least_cap`, or is at least `least_distance` away from it; both are at least `gap`, in

@@ -116,10 +116,58 @@ TEST(MeshCommand, LayersAreRegionsOfTheStatedVolumes) {
   double stated = 0;
   for (const auto& group : part["groups"]) stated += group["stated_volume"].get<double>();
   EXPECT_NEAR(stated, 18, 1e-9);
-  for (const char* box : {"x = 1..4", "x = 1..4, x = 1..4, z = 2..4", "x + y = 1..4, y = 0..3, z = 2..4"})
-    expect_refused_in_one_line(bernal({"mesh", folder / "out", "--to", "gmsh", "-o", folder / "a.msh",
-                                       "--contact", "gap", "--cut", box}),
-                               {"cut"});
+}
+
+constexpr std::string_view tetrahedron = R"(OFF
+4 4 0
+1 1 1
+4 1 1
+1 4 1
+1 1 4
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+)";
+
+TEST(MeshCommand, ConvexPartsAreCutOut) {
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
+  const Folder folder;
+  const Ended packed = bernal(
+      {"pack", folder.write("scene.toml", std::string(layered_spheres)).string(), "-o", folder / "out"});
+  ASSERT_EQ(packed.status, 0) << packed.err;
+  const auto mesh = [&](const std::string& part) {
+    return bernal({"mesh", folder / "out", "--to", "gmsh", "-o", folder / "part.msh", "--contact", "gap",
+                   "--regions", "all", "--order", "2", "--json", "--cut", part});
+  };
+  const auto expect_volume = [&](const std::string& part, double volume) {
+    const Ended ended = mesh(part);
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    const auto report = nlohmann::json::parse(ended.out);
+    EXPECT_NEAR(report["domain_volume"].get<double>(), volume, 1e-9);
+    EXPECT_GT(report["clipped"], 0);
+    double stated = 0, meshed = 0;
+    for (const auto& group : report["groups"]) {
+      stated += group["stated_volume"].get<double>();
+      meshed += group["volume"].get<double>();
+    }
+    EXPECT_NEAR(stated, volume, 1e-9);
+    EXPECT_NEAR(meshed, volume, 1e-9);
+    EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 1e-3);
+  };
+  expect_volume("0.6 x + 0.8 z = 1..3, -0.8 x + 0.6 z = -1..1, y = 0..3", 12);
+  expect_volume(folder.write("part.off", std::string(tetrahedron)).string(), 4.5);
+  constexpr std::string_view corners = "OFF\n4 3 0\n0 0 0\n3 0 0\n0 3 0\n0 0 3\n";
+  constexpr std::string_view faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n";
+  const std::string open = fmt::format("{}{}", corners, faces);
+  const std::string dented =
+      fmt::format("OFF\n5 6 0\n{}0.3 0.3 0.3\n{}3 1 2 4\n3 2 3 4\n3 3 1 4\n", corners.substr(10), faces);
+  for (const std::string& part :
+       {std::string("x = 1..4"), std::string("x = 1..4, x = 1..4, z = 2..4"), std::string("x = 1..4, y = 2"),
+        std::string("x = 1..4, y = 1..4, z = 0..5, x > 6"), folder.write("open.off", open).string(),
+        folder.write("dented.off", dented).string()})
+    expect_refused_in_one_line(mesh(part), {"cut"});
+  expect_refused_in_one_line(mesh((folder / "absent.stl").string()), {"absent.stl"});
 }
 
 TEST(MeshCommand, PrismsStandInTheFluid) {
