@@ -117,9 +117,9 @@ class CutFaces {
       for (const auto& chain : chains_[edge]) plane.add_chain(chain, false);
     for (const CircleThere& there : circles_at_[number])
       for (const auto& chain : there.circle->chains) plane.add_chain(chain, there.circle->is_whole);
+    if (plane.empty()) return;  // within a ball
     const std::uint32_t patch =
         draft_.add_patch({SurfacePatch::Kind::wall, number, {0, SurfacePatch::nothing}});
-    if (plane.empty()) return;  // within a ball
     plane.mesh(patch, face.is_turned, [&](const Vector<3>& p) { return size_in(face, p); });
   }
 
