@@ -97,7 +97,7 @@ class ShellsOfPieces {
     for (const Cut& cut : piece.cuts) {
       if (cut.face == Cut::contact) continue;
       const double depth = cut.keeps.offset - cut.keeps.normal.dot(piece.center);
-      if (!draft_.solids.part) {
+      if (!draft_.solids.part || draft_.solids.part->is_box) {  // planes at right angles
         for (std::size_t k = squares.size(); k-- > 0;) squares.push_back(squares[k] + depth * depth);
         continue;
       }

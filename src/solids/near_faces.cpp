@@ -3,9 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <ranges>
 
 namespace bernal {
+namespace {
+
+/// How far a sphere reaches beyond an edge at least, in radii, given the outward normals of its faces: so
+/// that where the edge pierces the sphere, the circles in the faces cross at 22 degrees, or half the angle of
+/// the edge. Where the centre lies half way between the faces, and the edge at the distance s from it, cos a
+/// = (1 - 2 c² + s² c²) / (1 - s² c²) with the sine c of half the edge's angle.
+double lowest_at_edge(const Vector<3>& normal, const Vector<3>& other) {
+  constexpr double widest = 22 * std::numbers::pi / 180;
+  const double angle = std::acos(std::clamp(-normal.dot(other), -1.0, 1.0));
+  const double c2 = 0.5 * (1 - std::cos(angle)), cosine = std::cos(std::min(widest, 0.5 * angle));
+  const double s2 = (2 * c2 - 1 + cosine) / (c2 * (1 + cosine));
+  return std::max(NearFaces::least_cap, 1 - std::sqrt(std::max(0.0, s2)));
+}
+
+}  // namespace
 
 NearFaces::NearFaces(const Bounds<3>& box, const Vector<3>& p) {
   // Of each axis: a face at its lower end, at its upper end, or none.
@@ -20,32 +36,34 @@ NearFaces::NearFaces(const Bounds<3>& box, const Vector<3>& p) {
         square += (p[k] - at) * (p[k] - at);
       }
     }
-    if (is_beside && std::isfinite(square)) distances_.push_back(std::sqrt(square));
+    if (is_beside && std::isfinite(square)) features_.push_back({std::sqrt(square)});
   }
 }
 
 NearFaces::NearFaces(const ConvexPart& part, const Vector<3>& p) {
   for (const ConvexPart::Face& face : part.faces) {
     const double above = face.keeps.normal.dot(p) - face.keeps.offset;
-    if (face.holds(p - above * face.keeps.normal, part)) distances_.push_back(std::abs(above));
+    if (face.holds(p - above * face.keeps.normal, part)) features_.push_back({std::abs(above)});
   }
-  const auto add = [&](const Vector<3>& d) {
-    distances_.push_back(std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+  const auto add = [&](const Vector<3>& d, double lowest) {
+    features_.push_back({std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), lowest});
   };
   for (const ConvexPart::Edge& edge : part.edges) {
     const Vector<3>&a = part.corners[edge.corners[0]].point, &b = part.corners[edge.corners[1]].point;
     const double along = (p - a).dot(edge.along);
-    if (along >= 0 && along <= (b - a).dot(edge.along)) add(p - a - along * edge.along);
+    if (along >= 0 && along <= (b - a).dot(edge.along))
+      add(p - a - along * edge.along,
+          lowest_at_edge(part.faces[edge.faces[0]].keeps.normal, part.faces[edge.faces[1]].keeps.normal));
   }
-  for (const ConvexPart::Corner& corner : part.corners) add(p - corner.point);
+  for (const ConvexPart::Corner& corner : part.corners) add(p - corner.point, least_cap);
 }
 
 double NearFaces::clear_radius(double radius, double gap) const {
-  const double lowest = std::max(gap, least_cap), nearest = std::max(gap, least_distance);
+  const double nearest = std::max(gap, least_distance);
   for (bool changed = true; changed;) {
     changed = false;
-    for (const double distance : distances_)
-      if (distance - radius < nearest * radius && radius - distance < lowest * radius) {
+    for (const auto& [distance, lowest] : features_)
+      if (distance - radius < nearest * radius && radius - distance < std::max(gap, lowest) * radius) {
         radius = std::nextafter(distance / (1 + nearest), 0.0);
         changed = true;
       }

@@ -23,14 +23,19 @@ class NearFaces {
 
   /// The largest radius, up to the given one, with which a sphere around the point reaches beyond each of
   /// them by at least `least_cap`, or is at least `least_distance` away from it; both are at least `gap`, in
-  /// radii. Cost: O(1).
+  /// radii. Beyond an edge sharper than 60 degrees it reaches farther, by up to an eighth, since circles in
+  /// both of its faces cross at a small angle there. Cost: O(1).
   double clear_radius(double radius, double gap) const;
   /// The same for a sphere and, from the outside in, for the spheres in it in which layers begin; no layer
   /// loses a share of its thickness. `layers`: radii that ascend. False if nothing changed.
   bool clear(double& radius, std::span<double> layers, double gap) const;
 
  private:
-  std::vector<double> distances_;
+  struct Feature {
+    double distance;
+    double lowest = least_cap;  ///< the lowest cap there
+  };
+  std::vector<Feature> features_;
 };
 
 /// Makes those spheres and layers smaller that the ends of the periods nearly touch, and states it in

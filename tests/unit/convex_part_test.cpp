@@ -262,6 +262,22 @@ TEST(NearFaces, TiltedPartsAreAsNearAsTheyAreUpright) {
   EXPECT_GT(changed, 200);
 }
 
+TEST(NearFaces, SpheresReachFartherBeyondSharpEdges) {
+  const auto cleared = [](double degrees, double radius) {
+    const double half = degrees * pi / 360;
+    const std::array<HalfSpace, 5> planes = {{{Vector<3>(-std::sin(half), std::cos(half), 0), 0},
+                                              {Vector<3>(-std::sin(half), -std::cos(half), 0), 0},
+                                              {Vector<3>::UnitX(), 40},
+                                              {Vector<3>::UnitZ(), 20},
+                                              {-Vector<3>::UnitZ(), 20}}};
+    const ConvexPart part = part_between(planes, {Vector<3>::Constant(-100), Vector<3>::Constant(100)});
+    return NearFaces(part, Vector<3>(1, 0, 0)).clear_radius(radius, 0.01);  // 1 from the sharp edge
+  };
+  EXPECT_EQ(cleared(60, 1.07), 1.07);
+  EXPECT_NEAR(cleared(30, 1.07), 1 / 1.03, 1e-12);
+  EXPECT_EQ(cleared(30, 1.16), 1.16);
+}
+
 // Meshes
 
 InnerSpheres shells_in(const Spheres<dynamic>& spheres, double share) {
