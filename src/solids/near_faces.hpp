@@ -23,8 +23,8 @@ class NearFaces {
 
   /// The largest radius, up to the given one, with which a sphere around the point reaches beyond each of
   /// them by at least `least_cap`, or is at least `least_distance` away from it; both are at least `gap`, in
-  /// radii. Beyond an edge sharper than 60 degrees it reaches farther, by up to an eighth, since circles in
-  /// both of its faces cross at a small angle there. Cost: O(1).
+  /// radii. At edges sharper than a right angle both are more, since circles in the two faces come near each
+  /// other before such an edge and cross at a small angle beyond it. Cost: O(1).
   double clear_radius(double radius, double gap) const;
   /// The same for a sphere and, from the outside in, for the spheres in it in which layers begin; no layer
   /// loses a share of its thickness. `layers`: radii that ascend. False if nothing changed.
@@ -33,7 +33,7 @@ class NearFaces {
  private:
   struct Feature {
     double distance;
-    double lowest = least_cap;  ///< the lowest cap there
+    double lowest = least_cap, nearest = least_distance;
   };
   std::vector<Feature> features_;
 };

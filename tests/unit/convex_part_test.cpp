@@ -262,7 +262,7 @@ TEST(NearFaces, TiltedPartsAreAsNearAsTheyAreUpright) {
   EXPECT_GT(changed, 200);
 }
 
-TEST(NearFaces, SpheresReachFartherBeyondSharpEdges) {
+TEST(NearFaces, SpheresKeepFartherFromSharpEdges) {
   const auto cleared = [](double degrees, double radius) {
     const double half = degrees * pi / 360;
     const std::array<HalfSpace, 5> planes = {{{Vector<3>(-std::sin(half), std::cos(half), 0), 0},
@@ -274,7 +274,9 @@ TEST(NearFaces, SpheresReachFartherBeyondSharpEdges) {
     return NearFaces(part, Vector<3>(1, 0, 0)).clear_radius(radius, 0.01);  // 1 from the sharp edge
   };
   EXPECT_EQ(cleared(60, 1.07), 1.07);
-  EXPECT_NEAR(cleared(30, 1.07), 1 / 1.03, 1e-12);
+  EXPECT_NEAR(cleared(60, 1), 1 / (1 + 0.03 * std::sqrt(2)), 1e-12);
+  EXPECT_EQ(cleared(90.01, 0.97), 0.97);
+  EXPECT_LT(cleared(30, 1.07), 0.93);
   EXPECT_EQ(cleared(30, 1.16), 1.16);
 }
 
