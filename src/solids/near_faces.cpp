@@ -70,7 +70,8 @@ double NearFaces::clear_radius(double radius, double gap) const {
       const double nearest = std::max(gap, feature.nearest), lowest = std::max(gap, feature.lowest);
       if (!(feature.distance - radius < nearest * radius && radius - feature.distance < lowest * radius))
         continue;
-      radius = std::nextafter(feature.distance / (1 + nearest), 0.0);
+      // Where rounding says that it is still too near it goes on by roundoffs.
+      radius = std::nextafter(std::min(radius, feature.distance / (1 + nearest)), 0.0);
       changed = true;
     }
   }

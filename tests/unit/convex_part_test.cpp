@@ -278,6 +278,7 @@ TEST(NearFaces, SpheresKeepFartherFromSharpEdges) {
   EXPECT_EQ(cleared(90.01, 0.97), 0.97);
   EXPECT_LT(cleared(30, 1.07), 0.93);
   EXPECT_EQ(cleared(30, 1.16), 1.16);
+  for (int k = 0; k < 3000; ++k) EXPECT_LE(cleared(20 + 0.02 * k, 1), 1);  // rounding ends everywhere
 }
 
 // Meshes
