@@ -42,7 +42,9 @@ struct MeshFileOptions {
   double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
   std::string unit = {};       ///< of the lengths in the files; the scene's if empty
   std::string cut = {};        ///< the box that is meshed: "x = 1..4, y = 1..4, z = 0..5"; all if empty
+  std::string patches = {};    ///< flat walls with names: "inlet: z = 0, outlet: z = 40"; none if empty
   bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
+  bool hold_volumes = false;   ///< whether facets of spheres hold their volumes, or corners lie on them
   int prisms = 0;              ///< layers of prisms in the fluid, on spheres and walls where there is room
   double prism_height = 0.1;   ///< of all layers together, on walls in mean radii
   double prism_growth = 1.2;   ///< height of a layer over that of the one nearer to the surface
