@@ -23,7 +23,7 @@ struct NamedPlane {
   cad::CutPlane plane;
 };
 
-[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
+[[noreturn]] void refuse_patches(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
@@ -37,10 +37,11 @@ void require_name(std::string_view name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto is_of_word = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-'; };
   if (name.empty() || !is_letter(name.front()) || !std::ranges::all_of(name, is_of_word))
-    refuse(fmt::format("a name of ‹patches› is a word of letters, digits, _ and -, not \"{}\"",
-                       plain_text(name)));
+    refuse_patches(fmt::format("a name of ‹patches› is a word of letters, digits, _ and -, not \"{}\"",
+                               plain_text(name)));
   if (std::ranges::find(taken, name) != taken.end() || name.starts_with("surface_of_"))
-    refuse(fmt::format("other surfaces of meshes are called \"{}\"; give the patch another name", name));
+    refuse_patches(
+        fmt::format("other surfaces of meshes are called \"{}\"; give the patch another name", name));
 }
 
 std::vector<NamedPlane> planes_in(std::string_view text) {
@@ -51,7 +52,7 @@ std::vector<NamedPlane> planes_in(std::string_view text) {
     from = comma + 1;
     const std::size_t colon = one.find(':');
     if (colon == std::string_view::npos || one.find_first_of("<>") != std::string_view::npos)
-      refuse(
+      refuse_patches(
           fmt::format("‹patches› takes names and planes such as \"inlet: z = 0, outlet: z = 40\", not \"{}\"",
                       plain_text(text)));
     const std::string_view name = trimmed(one.substr(0, colon));
@@ -106,7 +107,7 @@ void name_walls(ConformingSurface& surface, std::string_view text) {
       }
     }
     if (is_found) continue;
-    refuse(fmt::format(
+    refuse_patches(fmt::format(
         "no flat wall lies in the plane \"{}\" of the patch {}; {}", plain_text(named.plane.text), named.name,
         std::isfinite(nearest) ? fmt::format("the nearest parallel one is {:.6g} off it, {} its normal",
                                              std::abs(nearest), nearest > 0 ? "along" : "against")
