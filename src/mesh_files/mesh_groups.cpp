@@ -37,6 +37,7 @@ std::string name_of_patch(const SurfacePatch& patch, const VolumeMesh& mesh, con
     case SurfacePatch::Kind::wall:
       break;
   }
+  if (!patch.name.empty()) return patch.name;
   if (part != nullptr) return name_of_face(*part, patch.index);
   if (is_faceted(domain) || std::holds_alternative<Sphere>(domain)) return "walls";
   return std::holds_alternative<Cylinder>(domain) ? of_cylinder.at(patch.index) : name_of_end(patch.index);
@@ -101,9 +102,13 @@ ClassesOfMesh classes_of_mesh(const Packing& packing) {
 MeshGroups groups_of(const VolumeMesh& mesh, const Domain& domain, const ClassesOfMesh& classes,
                      const ConvexPart* part) {
   MeshGroups groups;
-  for (const SurfacePatch& patch : mesh.patches)
-    groups.surface_of_patch.push_back(
-        number_of(groups.surfaces, name_of_patch(patch, mesh, domain, classes, part)));
+  for (const SurfacePatch& patch : mesh.patches) {
+    const std::string name = name_of_patch(patch, mesh, domain, classes, part);
+    groups.surface_of_patch.push_back(number_of(groups.surfaces, name));
+    groups.is_opening.resize(groups.surfaces.size());
+    if (!patch.name.empty() || name == "floor" || name == "lid")
+      groups.is_opening[groups.surface_of_patch.back()] = true;
+  }
   for (const MeshRegion& region : mesh.regions) {
     const bool is_told = region.sphere && !classes.names.empty();
     groups.volume_of_region.push_back(number_of(

@@ -11,6 +11,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "mesh_files/mesh_file.hpp"
+#include "mesh_files/named_walls.hpp"
 #include "mesh_files/solids_to_mesh.hpp"
 #include "meshes/boundary_layer.hpp"
 #include "meshes/conforming_surface.hpp"
@@ -160,6 +161,7 @@ SurfaceMeshOptions sizes_of(const MeshFileOptions& options, bool is_surface) {
                            .neck_edge = options.neck_edge,
                            .per_gap = options.gap_edge,
                            .solids = options.solids,
+                           .hold_volumes = options.hold_volumes,
                            .per_layer = options.layer_edge};
   if (options.prisms > 0) sizes.wall_edge = 0.8 * sizes.sphere_edge;  // columns are as upright as on spheres
   if (!is_surface) return sizes;
@@ -192,6 +194,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.is_surface = writer.format.is_surface;
   ConformingSurface surface = conforming_surface(solids, sizes_of(options, report.is_surface), monitor);
   name_spheres(surface, of_packing);
+  if (!options.patches.empty()) name_walls(surface, options.patches);
   take_surface(surface, report);
   // The surface states what is between its own walls.
   report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
@@ -279,6 +282,8 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   if (format.is_surface && options.solids)
     refuse(
         fmt::format("the format {} is for a mesh of the fluid alone; leave out ‹regions=all›", format.name));
+  if (options.hold_volumes && options.order > 1)
+    refuse("‹facets=volume› is for elements of first order: those of second order follow the spheres");
   if (options.prisms == 0) return;
   if (!format.has_prisms) refuse(fmt::format("prisms are not written in the format {}", format.name));
   if (options.solids || options.order > 1)

@@ -58,9 +58,9 @@ MeshSizes::MeshSizes(const Solids& solids, const SurfaceMeshOptions& options)
   frame_ = frame_of(solids.domain);
 }
 
-std::vector<NearBall> MeshSizes::near(const Vector<3>& center, std::uint32_t sphere) const {
+std::vector<NearBall> MeshSizes::near(const Vector<3>& center, std::uint32_t sphere, double least) const {
   std::vector<NearBall> found;
-  const double r = spheres_.r[sphere], reach = options_.sphere_edge * r / options_.per_gap;
+  const double r = spheres_.r[sphere], reach = std::max(least, options_.sphere_edge * r / options_.per_gap);
   grid_.for_each_near(boundary_.wrap(center), r + largest_ + reach, [&](std::uint32_t j, const Vector<3>& d) {
     const double distance = d.norm(), rj = spheres_.r[j], gap = distance - r - rj;
     if (gap > reach || distance < 1e-9 * r) return;

@@ -5,10 +5,14 @@
 #include <optional>
 
 #include "core/parallel.hpp"
+#include "meshes/hold_volume.hpp"
 #include "meshes/planar_part.hpp"
 
 namespace bernal {
 namespace {
+
+/// Of the radius: surfaces that are nearer limit by how much facets that hold the volume stand off a sphere.
+constexpr double reach_of_room = 0.15;
 
 double distance_to_circle(const Vector<3>& p, const Circle& circle) {
   const double along = p.dot(circle.normal) - circle.depth;
@@ -47,8 +51,9 @@ void add_chain(BoundedPart& patch, Numbering& number, const std::vector<std::uin
 PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
   const Vector<3> center = part.piece.center;
   const double r = part.piece.radius;
+  const double reach = draft.options.hold_volumes ? reach_of_room * r : 0;
   const std::vector<NearBall> near =
-      part.is_outer() ? draft.sizes.near(center, part.piece.sphere) : std::vector<NearBall>();
+      part.is_outer() ? draft.sizes.near(center, part.piece.sphere, reach) : std::vector<NearBall>();
   const bool is_cut_at_end =
       std::ranges::any_of(part.circles, [](const Circle& c) { return c.kind == Circle::Kind::end; });
   struct Source {
@@ -94,10 +99,15 @@ PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
       patch.starts.push_back(p);
   }
   PartMesh made{number.ids(), mesh_patch(patch), {}};
-  for (Vector<3>& p : made.mesh.added) {
-    made.sizes.push_back(patch.size(p));
-    p += center;
-  }
+  for (const Vector<3>& p : made.mesh.added) made.sizes.push_back(patch.size(p));
+  if (draft.options.hold_volumes)
+    hold_volume(patch.points, made.mesh, r, [&](const Vector<3>& p) {
+      double room = std::min({reach, draft.sizes.from_walls(center + p), draft.sizes.from_ends(center + p)});
+      for (const NearBall& ball : near)
+        room = std::min(room, (center + p - ball.center).norm() - ball.radius);
+      return room;
+    });
+  for (Vector<3>& p : made.mesh.added) p += center;
   return made;
 }
 

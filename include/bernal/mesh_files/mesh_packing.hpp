@@ -44,7 +44,9 @@ struct MeshFileOptions {
   /// The convex part that is meshed: "x = 1..4, y = 1..4, z = 0..5", other planes, or a file of any format
   /// of a mesh; all if empty.
   std::string cut = {};
+  std::string patches = {};   ///< flat walls with names: "inlet: z = 0, outlet: z = 40"; none if empty
   bool solids = false;        ///< whether spheres and bridges are meshed too, or the fluid alone
+  bool hold_volumes = false;  ///< whether facets of spheres hold their volumes, or corners lie on them
   int prisms = 0;             ///< layers of prisms in the fluid, on spheres and walls where there is room
   double prism_height = 0.1;  ///< of all layers together, on walls in mean radii
   double prism_growth = 1.2;  ///< height of a layer over that of the one nearer to the surface
