@@ -118,58 +118,6 @@ TEST(MeshCommand, LayersAreRegionsOfTheStatedVolumes) {
   EXPECT_NEAR(stated, 18, 1e-9);
 }
 
-constexpr std::string_view tetrahedron = R"(OFF
-4 4 0
-1 1 1
-4 1 1
-1 4 1
-1 1 4
-3 0 2 1
-3 0 1 3
-3 0 3 2
-3 1 2 3
-)";
-
-TEST(MeshCommand, ConvexPartsAreCutOut) {
-  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
-  const Folder folder;
-  const Ended packed = bernal(
-      {"pack", folder.write("scene.toml", std::string(layered_spheres)).string(), "-o", folder / "out"});
-  ASSERT_EQ(packed.status, 0) << packed.err;
-  const auto mesh = [&](const std::string& part) {
-    return bernal({"mesh", folder / "out", "--to", "gmsh", "-o", folder / "part.msh", "--contact", "gap",
-                   "--regions", "all", "--order", "2", "--json", "--cut", part});
-  };
-  const auto expect_volume = [&](const std::string& part, double volume) {
-    const Ended ended = mesh(part);
-    ASSERT_EQ(ended.status, 0) << ended.err;
-    const auto report = nlohmann::json::parse(ended.out);
-    EXPECT_NEAR(report["domain_volume"].get<double>(), volume, 1e-9);
-    EXPECT_GT(report["clipped"], 0);
-    double stated = 0, meshed = 0;
-    for (const auto& group : report["groups"]) {
-      stated += group["stated_volume"].get<double>();
-      meshed += group["volume"].get<double>();
-    }
-    EXPECT_NEAR(stated, volume, 1e-9);
-    EXPECT_NEAR(meshed, volume, 1e-9);
-    EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 1e-3);
-  };
-  expect_volume("0.6 x + 0.8 z = 1..3, -0.8 x + 0.6 z = -1..1, y = 0..3", 12);
-  expect_volume(folder.write("part.off", std::string(tetrahedron)).string(), 4.5);
-  constexpr std::string_view corners = "OFF\n4 3 0\n0 0 0\n3 0 0\n0 3 0\n0 0 3\n";
-  constexpr std::string_view faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n";
-  const std::string open = fmt::format("{}{}", corners, faces);
-  const std::string dented =
-      fmt::format("OFF\n5 6 0\n{}0.3 0.3 0.3\n{}3 1 2 4\n3 2 3 4\n3 3 1 4\n", corners.substr(10), faces);
-  for (const std::string& part :
-       {std::string("x = 1..4"), std::string("x = 1..4, x = 1..4, z = 2..4"), std::string("x = 1..4, y = 2"),
-        std::string("x = 1..4, y = 1..4, z = 0..5, x > 6"), folder.write("open.off", open).string(),
-        folder.write("dented.off", dented).string()})
-    expect_refused_in_one_line(mesh(part), {"cut"});
-  expect_refused_in_one_line(mesh((folder / "absent.stl").string()), {"absent.stl"});
-}
-
 TEST(MeshCommand, PrismsStandInTheFluid) {
   if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   const Packed result;
@@ -204,35 +152,6 @@ TEST(MeshCommand, PrismsStandInTheFluid) {
   expect_refused_in_one_line(mesh("abaqus", {"--prisms", "3"}), {"prisms", "abaqus"});
   expect_refused_in_one_line(mesh("gmsh", {"--prisms", "3", "--regions", "all"}), {"prisms", "fluid"});
   expect_refused_in_one_line(mesh("gmsh", {"--prisms", "3", "--order", "2"}), {"prisms", "order"});
-}
-
-TEST(MeshCommand, CadPartsKeepTheirVolumeInTheMesh) {
-  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
-  Folder folder;
-  const std::string scene = fmt::format(R"(unit = "m"
-[container]
-kind = "mesh"
-file = "{}/meshes/hopper.stl"
-unit = "m"
-[spheres]
-count = 8
-diameter = 0.24
-)",
-                                        BERNAL_DATA);
-  const std::string out = folder / "out";
-  const Ended packed = bernal({"pack", folder.write("scene.toml", scene).string(), "-o", out});
-  ASSERT_EQ(packed.status, 0) << packed.err;
-  for (const char* contact : {"bridge", "gap"}) {
-    const Ended ended = bernal({"mesh", out, "--to", "gmsh", "-o", folder / "bed.msh", "--regions", "all",
-                                "--contact", contact, "--json"});
-    ASSERT_EQ(ended.status, 0) << ended.err;
-    const auto report = nlohmann::json::parse(ended.out);
-    EXPECT_GE(report["least_sicn"], 0.1);
-    double volume = 0;
-    for (const auto& group : report["groups"]) volume += group["volume"].get<double>();
-    EXPECT_NEAR(volume, 0.8125, 1e-7);  // corners of the file are in single precision
-    EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 0.01);
-  }
 }
 
 TEST(MeshCommand, FilletsHoldTheStatedPorosity) {

@@ -376,7 +376,6 @@ TEST(CutOut, ManyNarrowFacesCutOneSphere) {
   expect_good_mesh(moved(prism(24, 2.6, 4), tilted, Vector<3>(1, 2, 3)), scattered(6, 9));
 }
 
-/// A ball may hold a whole face.
 TEST(CutOut, NarrowFacesLieWithinBalls) {
   NEEDS_TETGEN();
   Spheres<dynamic> spheres(3);
