@@ -33,7 +33,11 @@ struct Taken {
     const auto [stop, problem] = std::from_chars(text.data(), end, options.*member);
     if (problem != std::errc() || stop != end) refuse_value(key, text);
   }
-  void operator()(std::string MeshFileOptions::*member) const { options.*member = text; }
+  void operator()(std::string MeshFileOptions::*member) const {
+    if (text.empty())
+      throw Error(ErrorCode::bad_argument, fmt::format("‹{}› is empty; leave it out", key.name));
+    options.*member = text;
+  }
   void operator()(bool MeshFileOptions::*member) const { options.*member = place() == 1; }
   void operator()(ContactTreatment MeshFileOptions::*member) const {
     constexpr ContactTreatment treatments[] = {ContactTreatment::bridge, ContactTreatment::gap,

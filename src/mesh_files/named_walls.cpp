@@ -30,18 +30,33 @@ std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
 }
 
-void require_name(std::string_view name) {
-  static constexpr std::array<std::string_view, 12> taken = {"necks",   "caps",    "side",    "walls",
-                                                             "floor",   "lid",     "x_lower", "x_upper",
-                                                             "y_lower", "y_upper", "z_lower", "z_upper"};
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+std::string in_lower_case(std::string_view name) {
+  std::string made(name);
+  for (char& c : made)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return made;
+}
+
+/// Programs such as Abaqus tell names apart without regard to case, and nodes from elements not at all.
+void require_name(std::string_view given) {
+  constexpr std::size_t longest = 60;
+  static constexpr std::array<std::string_view, 16> taken = {
+      "all",   "fluid", "spheres", "bridges", "necks",   "caps",    "side",    "walls",
+      "floor", "lid",   "x_lower", "x_upper", "y_lower", "y_upper", "z_lower", "z_upper"};
+  const std::string name = in_lower_case(given);
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
   const auto is_of_word = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-'; };
-  if (name.empty() || !is_letter(name.front()) || !std::ranges::all_of(name, is_of_word))
-    refuse_patches(fmt::format("a name of ‹patches› is a word of letters, digits, _ and -, not \"{}\"",
-                               plain_text(name)));
-  if (std::ranges::find(taken, name) != taken.end() || name.starts_with("surface_of_"))
+  if (name.empty() || name.size() > longest || !is_letter(name.front()) ||
+      !std::ranges::all_of(name, is_of_word))
     refuse_patches(
-        fmt::format("other surfaces of meshes are called \"{}\"; give the patch another name", name));
+        fmt::format("a name of ‹patches› is a word that begins with a letter, of at most {} letters, "
+                    "digits, _ and -, not \"{}\"",
+                    longest, plain_text(given)));
+  const auto begins = [&](const char* with) { return name.starts_with(with); };
+  if (std::ranges::find(taken, name) != taken.end() ||
+      std::ranges::any_of(std::array{"surface_of_", "layer_", "spheres_", "face_"}, begins))
+    refuse_patches(
+        fmt::format("other parts of meshes are called \"{}\"; give the patch another name", given));
 }
 
 std::vector<NamedPlane> planes_in(std::string_view text) {
@@ -57,6 +72,10 @@ std::vector<NamedPlane> planes_in(std::string_view text) {
                       plain_text(text)));
     const std::string_view name = trimmed(one.substr(0, colon));
     require_name(name);
+    for (const NamedPlane& other : planes)
+      if (other.name != name && in_lower_case(other.name) == in_lower_case(name))
+        refuse_patches(
+            fmt::format("the names {} and {} of ‹patches› differ in case alone", other.name, name));
     planes.push_back({std::string(name), cad::plane_in(trimmed(one.substr(colon + 1)))});
   }
   return planes;
@@ -100,7 +119,10 @@ void name_walls(ConformingSurface& surface, std::string_view text) {
       const auto& [least, largest] = heights[p];
       if (!(largest - least <= 2 * tolerance)) continue;
       if (std::abs(least) <= tolerance && std::abs(largest) <= tolerance) {
-        surface.patches[p].name = named.name;
+        std::string& name = surface.patches[p].name;
+        if (!name.empty() && name != named.name)
+          refuse_patches(fmt::format("the patches {} and {} name the same wall", name, named.name));
+        name = named.name;
         is_found = true;
       } else if (std::abs(least) < std::abs(nearest)) {
         nearest = least;
@@ -109,9 +131,10 @@ void name_walls(ConformingSurface& surface, std::string_view text) {
     if (is_found) continue;
     refuse_patches(fmt::format(
         "no flat wall lies in the plane \"{}\" of the patch {}; {}", plain_text(named.plane.text), named.name,
-        std::isfinite(nearest) ? fmt::format("the nearest parallel one is {:.6g} off it, {} its normal",
-                                             std::abs(nearest), nearest > 0 ? "along" : "against")
-                               : std::string("no flat wall is parallel to it")));
+        std::isfinite(nearest)
+            ? fmt::format("the nearest parallel one is {:.6g} off it, {} its normal", std::abs(nearest),
+                          nearest > 0 ? "along" : "against")
+            : std::string("no flat wall is parallel to it, and ends of periods have names of their own")));
   }
 }
 

@@ -110,6 +110,8 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
     throw Error(ErrorCode::bad_argument, "there are no spheres in the part of ‹cut›");
   report.spheres = part.solids.spheres.size();
   report.domain_volume = volume_of(part.solids.domain);
+  report.packed_porosity =
+      1 - volume_in(*part.solids.part, packing.spheres, packing.domain) / report.domain_volume;
   report.cleared = part.solids.cleared;
   for (const Piece& piece : part.solids.pieces) report.clipped += !piece.cuts.empty();
   return {std::move(part.solids), std::move(part.of_packing)};

@@ -12,6 +12,7 @@ namespace bernal {
 namespace {
 
 /// Of the radius: surfaces that are nearer limit by how much facets that hold the volume stand off a sphere.
+/// With long edges it is their square, a fifth of which is more than they ask for.
 constexpr double reach_of_room = 0.15;
 
 double distance_to_circle(const Vector<3>& p, const Circle& circle) {
@@ -51,7 +52,8 @@ void add_chain(BoundedPart& patch, Numbering& number, const std::vector<std::uin
 PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
   const Vector<3> center = part.piece.center;
   const double r = part.piece.radius;
-  const double reach = draft.options.hold_volumes ? reach_of_room * r : 0;
+  const double longest = draft.options.sphere_edge;
+  const double reach = draft.options.hold_volumes ? std::max(reach_of_room, longest * longest) * r : 0;
   const std::vector<NearBall> near =
       part.is_outer() ? draft.sizes.near(center, part.piece.sphere, reach) : std::vector<NearBall>();
   const bool is_cut_at_end =

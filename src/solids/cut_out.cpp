@@ -42,7 +42,37 @@ void require_within(const Domain& domain, const ConvexPart& part) {
                              p[0], p[1], p[2]));
 }
 
+/// Calls visit(centre) for the images of a ball, in a domain that may repeat itself, that reach into a part.
+template <class Visit>
+void for_each_image_in(const ConvexPart& part, const Bounds<3>& bounds, const Boundary<3>& boundary,
+                       const Vector<3>& center, double r, const Visit& visit) {
+  std::array<int, 3> first{}, last{};
+  for (int k = 0; k < 3; ++k) {
+    if (!boundary.repeats(k)) continue;
+    const auto at = static_cast<std::size_t>(k);
+    first[at] = static_cast<int>(std::ceil((bounds.lower[k] - r - center[k]) / boundary.edges[k]));
+    last[at] = static_cast<int>(std::floor((bounds.upper[k] + r - center[k]) / boundary.edges[k]));
+  }
+  for (int x = first[0]; x <= last[0]; ++x)
+    for (int y = first[1]; y <= last[1]; ++y)
+      for (int z = first[2]; z <= last[2]; ++z) {
+        const Vector<3> image = center + Vector<3>(x, y, z).cwiseProduct(boundary.edges);
+        if (part.height(image) < r && part.distance(image) < r) visit(image);
+      }
+}
+
 }  // namespace
+
+double volume_in(const ConvexPart& part, const Spheres<dynamic>& spheres, const Domain& domain) {
+  const Boundary<3> boundary = boundary_of<3>(domain);
+  const Bounds<3> bounds = part.bounds();
+  double volume = 0;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for_each_image_in(part, bounds, boundary, spheres.center(i), spheres.r[i], [&](const Vector<3>& image) {
+      if (const auto piece = piece_in(part, image, spheres.r[i])) volume += volume_of(*piece);
+    });
+  return volume;
+}
 
 CutOut cut_out(const Solids& whole, const ConvexPart& part, double gap) {
   require_within(whole.domain, part);
@@ -60,37 +90,30 @@ CutOut cut_out(const Solids& whole, const ConvexPart& part, double gap) {
   solids.part = part;
   if (!whole.shells.first.empty()) solids.shells.first.push_back(0);
   const Boundary<3> boundary = boundary_of<3>(whole.domain);
+  double filled = 0;
   for (std::uint32_t i = 0; i < whole.spheres.size(); ++i) {
     const Vector<3> center(whole.spheres.center(i));
     const double r = whole.spheres.r[i];
-    std::array<int, 3> first{}, last{};
-    for (int k = 0; k < 3; ++k) {
-      if (!boundary.repeats(k)) continue;
-      const auto at = static_cast<std::size_t>(k);
-      first[at] = static_cast<int>(std::ceil((bounds.lower[k] - r - center[k]) / boundary.edges[k]));
-      last[at] = static_cast<int>(std::floor((bounds.upper[k] + r - center[k]) / boundary.edges[k]));
-    }
-    for (int x = first[0]; x <= last[0]; ++x)
-      for (int y = first[1]; y <= last[1]; ++y)
-        for (int z = first[2]; z <= last[2]; ++z) {
-          const Vector<3> image = center + Vector<3>(x, y, z).cwiseProduct(boundary.edges);
-          const double height = part.height(image);
-          if (!(height < r) || !(part.distance(image) < r)) continue;
-          double radius = r;
-          const std::span<const double> within = whole.shells.of(i);
-          std::vector<double> layers(within.begin(), within.end());
-          if (height > -2 * r) solids.cleared += NearFaces(part, image).clear(radius, layers, gap);
-          std::optional<Piece> piece = piece_in(part, image, radius);
-          if (!piece) continue;
-          piece->sphere = static_cast<std::uint32_t>(solids.spheres.size());
-          solids.pieces.push_back(std::move(*piece));
-          solids.spheres.push_back(image, radius);
-          made.of_packing.push_back(i);
-          if (solids.shells.first.empty()) continue;
-          solids.shells.radius.insert(solids.shells.radius.end(), layers.begin(), layers.end());
-          solids.shells.first.push_back(solids.shells.radius.size());
-        }
+    for_each_image_in(part, bounds, boundary, center, r, [&](const Vector<3>& image) {
+      double radius = r;
+      const std::span<const double> within = whole.shells.of(i);
+      std::vector<double> layers(within.begin(), within.end());
+      if (part.height(image) > -2 * r) solids.cleared += NearFaces(part, image).clear(radius, layers, gap);
+      std::optional<Piece> piece = piece_in(part, image, radius);
+      if (!piece) return;
+      filled += volume_of(*piece);
+      piece->sphere = static_cast<std::uint32_t>(solids.spheres.size());
+      solids.pieces.push_back(std::move(*piece));
+      solids.spheres.push_back(image, radius);
+      made.of_packing.push_back(i);
+      if (solids.shells.first.empty()) return;
+      solids.shells.radius.insert(solids.shells.radius.end(), layers.begin(), layers.end());
+      solids.shells.first.push_back(solids.shells.radius.size());
+    });
   }
+  constexpr double rounding = 1e-9;
+  if (!(filled < (1 - rounding) * volume_of(solids.domain)))
+    refuse_cut("the part of ‹cut› lies within one sphere: there is nothing between spheres to mesh");
   return made;
 }
 

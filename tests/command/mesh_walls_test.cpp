@@ -86,6 +86,12 @@ TEST(MeshWalls, PlanesWithoutAWallAndTakenNamesAreRefused) {
   expect_refused_in_one_line(mesh("inlet: z = nonsense"), {"nonsense"});
   expect_refused_in_one_line(mesh("walls: z = 0"), {"walls", "another name"});
   expect_refused_in_one_line(mesh("in let: z = 0"), {"in let"});
+  expect_refused_in_one_line(mesh("Fluid: z = 0"), {"Fluid", "another name"});
+  expect_refused_in_one_line(mesh("all: z = 0"), {"all", "another name"});
+  expect_refused_in_one_line(mesh("in: z = 0, IN: z = 1.4"), {"in", "IN", "case"});
+  expect_refused_in_one_line(mesh("a: z = 0, b: z = 0"), {"a and b", "same wall"});
+  expect_refused_in_one_line(mesh("1: z = 0"), {"begins with a letter"});
+  expect_refused_in_one_line(mesh(""), {"--patches", "empty"});
 }
 
 constexpr const char* layered_spheres = R"(unit = "mm"
@@ -135,6 +141,8 @@ TEST(MeshWalls, ConvexPartsAreCutOut) {
     EXPECT_NEAR(stated, volume, 1e-9);
     EXPECT_NEAR(meshed, volume, 1e-9);
     EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 1e-3);
+    EXPECT_LE(report["packed_porosity"].get<double>(), report["porosity"].get<double>() + 1e-12);
+    EXPECT_GT(report["packed_porosity"].get<double>(), 0.3);
   };
   expect_volume("0.6 x + 0.8 z = 1..3, -0.8 x + 0.6 z = -1..1, y = 0..3", 12);
   expect_volume(folder.write("part.off", std::string(tetrahedron)).string(), 4.5);
@@ -149,6 +157,7 @@ TEST(MeshWalls, ConvexPartsAreCutOut) {
         folder.write("dented.off", dented).string()})
     expect_refused_in_one_line(mesh(part), {"cut"});
   expect_refused_in_one_line(mesh((folder / "absent.stl").string()), {"absent.stl"});
+  expect_refused_in_one_line(mesh(""), {"--cut", "empty"});
 }
 
 }  // namespace mesh_walls_test

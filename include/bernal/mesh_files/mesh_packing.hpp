@@ -121,7 +121,7 @@ struct BedMeshReport {
 
   double domain_volume = 0;
   double porosity = 0;                         ///< in closed form, contacts as they were treated
-  std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed; nothing for a part
+  std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed
   double meshed_porosity = 0;                  ///< of the mesh
   double contact_area = 0;                     ///< least cross-sections of necks, flat faces of caps
   struct Group {
