@@ -34,7 +34,7 @@ void print_surface(const BedMeshReport& report, std::string_view unit) {
   fmt::print("spheres      {}; {} bridges", grouped(report.spheres), grouped(report.necks));
   if (report.clipped > 0) fmt::print("; {} cut by faces of the part", grouped(report.clipped));
   if (report.cleared > 0)
-    fmt::print("; {} that {} nearly touches made smaller there", grouped(report.cleared),
+    fmt::print("; {} that {} nearly touches made smaller there, whole or in a layer", grouped(report.cleared),
                report.clipped > 0 ? "a face of the part" : "an end of a period");
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for, by up to {:.0f} %, so that they stay apart",

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
 #include "meshes/hold_volume.hpp"
 #include "meshes/planar_part.hpp"
@@ -207,7 +208,8 @@ std::optional<double> angle_without(std::vector<std::array<double, 2>> arcs) {
 
 /// Triangles of what is left of a neck's side in the domain, which is unrolled where that does not go all the
 /// way around, so that edges of its boundary are as straight in the plane as they are. Else it is mapped by
-/// angle and the exponential of the height, which keeps angles.
+/// angle and the exponential of the height, which keeps angles. In this map edges of a circle are chords,
+/// which may cross what is near it on a thin neck: then heights are stretched until they do not.
 void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t patch) {
   const double a = neck.radius, middle = 0.5 * (neck.begin + neck.end);
   const Vector<3> around = neck.around();
@@ -236,9 +238,10 @@ void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t pat
       arcs.push_back({from, std::remainder(to - from, 2 * std::numbers::pi)});
     }
   const std::optional<double> cut = angle_without(std::move(arcs));
+  double stretch = 1;
   const auto flat = [&](const Vector<3>& p) {
     if (!cut) {
-      const double r = a * std::exp(height_of(p) / a);
+      const double r = a * std::exp(stretch * height_of(p) / a);
       return Vector<3>(r * std::cos(angle_of(p)), r * std::sin(angle_of(p)), 0);
     }
     const double turned = std::remainder(angle_of(p) - *cut - std::numbers::pi, 2 * std::numbers::pi);
@@ -246,11 +249,17 @@ void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t pat
   };
   const auto back = [&](const Vector<3>& p) {
     return cut ? at(p[0], p[1] / a + *cut + std::numbers::pi)
-               : at(a * std::log(p.norm() / a), std::atan2(p[1], p[0]));
+               : at(a * std::log(p.norm() / a) / stretch, std::atan2(p[1], p[0]));
   };
-  PlanarPart part(draft, flat, back);
-  for (const auto& [chain, is_closed] : chains) part.add_chain(chain, is_closed);
-  part.mesh(patch, true, [&](const Vector<3>&) { return neck.edge; });
+  constexpr double most_stretch = 64;
+  for (;; stretch *= 2) try {
+      PlanarPart part(draft, flat, back);
+      for (const auto& [chain, is_closed] : chains) part.add_chain(chain, is_closed);
+      part.mesh(patch, true, [&](const Vector<3>&) { return neck.edge; });
+      return;
+    } catch (const Error&) {
+      if (cut || stretch >= most_stretch) throw;
+    }
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ double depth_in(const Domain& domain, const Vector<3>& p) {
   } else if (const auto* sphere = std::get_if<Sphere>(&domain)) {
     least = sphere->radius - (p - sphere->center).norm();
   } else {
-    refuse_cut(
-        fmt::format("‹cut› takes a part of boxes, cylinders and spheres, not of a {}", name_of(domain)));
+    refuse_cut(fmt::format("‹cut› takes parts of packings in boxes, cylinders and spheres, not in a {}",
+                           name_of(domain)));
   }
   return least;
 }
@@ -40,6 +40,18 @@ void require_within(const Domain& domain, const ConvexPart& part) {
     if (const Vector<3>& p = corner.point; depth_in(domain, p) < -rounding)
       refuse_cut(fmt::format("the part of ‹cut› reaches out of the container at ({:.6g}, {:.6g}, {:.6g})",
                              p[0], p[1], p[2]));
+}
+
+/// A part that repeats a period more often than anybody means.
+void require_fewer_than_too_many(const Solids& whole, const ConvexPart& part) {
+  constexpr double most = 1e7;
+  const double count =
+      static_cast<double>(whole.spheres.size()) * volume_of(part.domain()) / volume_of(whole.domain);
+  if (count > most)
+    refuse_cut(
+        fmt::format("the part of ‹cut› is {:.6g} wide and would hold about {:.0g} spheres, images of "
+                    "the {} in the period; is its unit right?",
+                    part.bounds().size().maxCoeff(), count, whole.spheres.size()));
 }
 
 /// Calls visit(centre) for the images of a ball, in a domain that may repeat itself, that reach into a part.
@@ -76,6 +88,7 @@ double volume_in(const ConvexPart& part, const Spheres<dynamic>& spheres, const 
 
 CutOut cut_out(const Solids& whole, const ConvexPart& part, double gap) {
   require_within(whole.domain, part);
+  require_fewer_than_too_many(whole, part);
   const Bounds<3> bounds = part.bounds();
   if (joins(whole.contacts.treatment) || whole.contacts.treatment == ContactTreatment::cap)
     refuse_cut("‹cut› takes contact gap or shrink: bridges and caps are not cut");

@@ -158,6 +158,7 @@ TEST(MeshWalls, ConvexPartsAreCutOut) {
     expect_refused_in_one_line(mesh(part), {"cut"});
   expect_refused_in_one_line(mesh((folder / "absent.stl").string()), {"absent.stl"});
   expect_refused_in_one_line(mesh(""), {"--cut", "empty"});
+  expect_refused_in_one_line(mesh("x = 0..3000, y = 0..3000, z = 0..3000"), {"--cut", "3000", "unit"});
 }
 
 }  // namespace mesh_walls_test
