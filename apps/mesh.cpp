@@ -32,10 +32,10 @@ std::string text_of_place(const Vector<3>& p) {
 
 void print_surface(const BedMeshReport& report, std::string_view unit) {
   fmt::print("spheres      {}; {} bridges", grouped(report.spheres), grouped(report.necks));
-  if (report.clipped > 0) fmt::print("; {} cut by faces of the box", grouped(report.clipped));
+  if (report.clipped > 0) fmt::print("; {} cut by faces of the part", grouped(report.clipped));
   if (report.cleared > 0)
-    fmt::print("; {} that {} nearly touches made smaller there", grouped(report.cleared),
-               report.clipped > 0 ? "a face of the box" : "an end of a period");
+    fmt::print("; {} that {} nearly touches made smaller there, whole or in a layer", grouped(report.cleared),
+               report.clipped > 0 ? "a face of the part" : "an end of a period");
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for, by up to {:.0f} %, so that they stay apart",
                grouped(report.shrunk_necks), 100 * report.largest_neck_shrink);
@@ -175,6 +175,8 @@ Command mesh_command() {
        .examples = {{"bernal mesh out --to openfoam -o case/bed.foam",
                      "polyMesh of the pores, for checkMesh"},
                     {"bernal mesh out --to openfoam -o case/bed.foam --prisms 3", "with boundary layers"},
+                    {"bernal mesh out --to openfoam -o case --patches \"inlet: z = 0, outlet: z = 40\"",
+                     "with inlet and outlet of a CAD part"},
                     {"bernal mesh out --to gmsh -o bed.msh --regions all",
                      "pores and spheres, for Gmsh, meshio"},
                     {"bernal mesh out --to abaqus -o rve.inp --regions all --order 2", "C3D10, for CalculiX"},

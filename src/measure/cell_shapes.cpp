@@ -50,7 +50,7 @@ PlacesOfCell places_of(const Cells& cells, std::uint32_t cell, CellShape& shape)
 
 /// The point from which a face is divided into triangles: the middle of its corners, which both of its cells
 /// have.
-Vector<3> middle_of(const std::vector<Vector<3>>& loop) {
+Vector<3> mean_of(const std::vector<Vector<3>>& loop) {
   Vector<3> sum = Vector<3>::Zero();
   for (const Vector<3>& p : loop) sum += p;
   return sum / static_cast<double>(loop.size());
@@ -86,7 +86,7 @@ CellShape shape_of(const Cells& cells, std::uint32_t cell) {
   CellShape shape;
   if (cells.is_empty(cell)) return shape;
   const PlacesOfCell places = places_of(cells, cell, shape);
-  const Vector<3> apex = middle_of(places.corners);
+  const Vector<3> apex = mean_of(places.corners);
   const int dimension = cells.dimension;
   Vector<3> moment = Vector<3>::Zero();
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();  // ∫ x xᵀ dV about the apex
@@ -100,7 +100,7 @@ CellShape shape_of(const Cells& cells, std::uint32_t cell) {
       spread += area / 12 * (a * a.transpose() + b * b.transpose() + (a + b) * (a + b).transpose());
       continue;
     }
-    const Vector<3> middle = middle_of(loop) - apex;
+    const Vector<3> middle = mean_of(loop) - apex;
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Vector<3> a = loop[k] - apex, b = loop[(k + 1) % loop.size()] - apex;
       const Vector<3> twice = (a - middle).cross(b - middle);

@@ -15,6 +15,7 @@ namespace bernal {
 struct MeshGroups {
   std::vector<std::string> surfaces, volumes;
   std::vector<std::uint32_t> surface_of_patch, volume_of_region;
+  std::vector<bool> is_opening;  ///< of surfaces: where fluid may enter or leave
 
   std::uint32_t surface_of(const VolumeMesh& mesh, std::size_t triangle) const {
     return surface_of_patch[mesh.patch[triangle]];
@@ -40,7 +41,9 @@ ClassesOfMesh classes_of_mesh(const Packing&);
 /// Where there are classes, "spheres_steel" and "surface_of_steel" stand for "spheres" and
 /// "surface_of_spheres"; where spheres have layers, "layer_kernel" stands for what is in them, and
 /// "surface_of_layer_kernel" for where it ends within others.
-MeshGroups groups_of(const VolumeMesh&, const Domain&, const ClassesOfMesh& = {});
+/// Faces of a `part` that is cut out have names: "x_lower" across an axis, else "face_1" and so on by number.
+MeshGroups groups_of(const VolumeMesh&, const Domain&, const ClassesOfMesh& = {},
+                     const ConvexPart* part = nullptr);
 
 /// "x_lower" for 0, "x_upper" for 1, up to "z_upper" for 5.
 std::string name_of_end(std::uint32_t face);
@@ -76,8 +79,8 @@ MeshWriter openfoam_of_mesh();
 MeshWriter vtu_of_mesh();
 MeshWriter snappy_of_mesh();
 
-/// What OpenFOAM calls a patch of this name: "patch" where fluid enters or leaves, else "wall".
-std::string type_of_patch(std::string_view name);
+/// What OpenFOAM calls the patch of a surface: "patch" where fluid may enter or leave, else "wall".
+std::string type_of_patch(const MeshGroups&, std::size_t surface);
 /// What programs of OpenFOAM read before the mesh, where the case does not have it: it is the user's then.
 void write_system_of_openfoam(const MeshToWrite&, StagedFolder&);
 

@@ -13,8 +13,14 @@ std::string name_of_layer(const MeshRegion& region, const ClassesOfMesh& classes
   return "layer_" + classes.layers[of_class][*region.layer];
 }
 
+std::string name_of_face(const ConvexPart& part, std::uint32_t number) {
+  const ConvexPart::Face& face = part.faces[number];
+  if (face.axis < 0) return "face_" + std::to_string(number + 1);
+  return name_of_end(2 * static_cast<std::uint32_t>(face.axis) + (face.keeps.normal[face.axis] > 0 ? 1 : 0));
+}
+
 std::string name_of_patch(const SurfacePatch& patch, const VolumeMesh& mesh, const Domain& domain,
-                          const ClassesOfMesh& classes) {
+                          const ClassesOfMesh& classes, const ConvexPart* part) {
   constexpr std::array<const char*, 3> of_cylinder = {"side", "floor", "lid"};
   switch (patch.kind) {
     case SurfacePatch::Kind::sphere:
@@ -31,6 +37,8 @@ std::string name_of_patch(const SurfacePatch& patch, const VolumeMesh& mesh, con
     case SurfacePatch::Kind::wall:
       break;
   }
+  if (!patch.name.empty()) return patch.name;
+  if (part != nullptr) return name_of_face(*part, patch.index);
   if (is_faceted(domain) || std::holds_alternative<Sphere>(domain)) return "walls";
   return std::holds_alternative<Cylinder>(domain) ? of_cylinder.at(patch.index) : name_of_end(patch.index);
 }
@@ -91,11 +99,16 @@ ClassesOfMesh classes_of_mesh(const Packing& packing) {
   return made;
 }
 
-MeshGroups groups_of(const VolumeMesh& mesh, const Domain& domain, const ClassesOfMesh& classes) {
+MeshGroups groups_of(const VolumeMesh& mesh, const Domain& domain, const ClassesOfMesh& classes,
+                     const ConvexPart* part) {
   MeshGroups groups;
-  for (const SurfacePatch& patch : mesh.patches)
-    groups.surface_of_patch.push_back(
-        number_of(groups.surfaces, name_of_patch(patch, mesh, domain, classes)));
+  for (const SurfacePatch& patch : mesh.patches) {
+    const std::string name = name_of_patch(patch, mesh, domain, classes, part);
+    groups.surface_of_patch.push_back(number_of(groups.surfaces, name));
+    groups.is_opening.resize(groups.surfaces.size());
+    if (!patch.name.empty() || name == "floor" || name == "lid")
+      groups.is_opening[groups.surface_of_patch.back()] = true;
+  }
   for (const MeshRegion& region : mesh.regions) {
     const bool is_told = region.sphere && !classes.names.empty();
     groups.volume_of_region.push_back(number_of(

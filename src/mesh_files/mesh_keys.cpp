@@ -33,7 +33,11 @@ struct Taken {
     const auto [stop, problem] = std::from_chars(text.data(), end, options.*member);
     if (problem != std::errc() || stop != end) refuse_value(key, text);
   }
-  void operator()(std::string MeshFileOptions::*member) const { options.*member = text; }
+  void operator()(std::string MeshFileOptions::*member) const {
+    if (text.empty())
+      throw Error(ErrorCode::bad_argument, fmt::format("‹{}› is empty; leave it out", key.name));
+    options.*member = text;
+  }
   void operator()(bool MeshFileOptions::*member) const { options.*member = place() == 1; }
   void operator()(ContactTreatment MeshFileOptions::*member) const {
     constexpr ContactTreatment treatments[] = {ContactTreatment::bridge, ContactTreatment::gap,
@@ -71,6 +75,13 @@ const std::vector<MeshKey>& mesh_keys() {
        &Of::gap_edge, 0.5, 50},
       {"layer_size", "Edges on spheres with thin layers, in thicknesses of these; 6 if absent", "WIDTHS",
        &Of::layer_edge, 0.5, 50},
+      {.name = "facets",
+       .what =
+           "What facets keep of spheres: corners lie on them, or volume is held, by corners that stand off "
+           "them a little; corners if absent",
+       .placeholder = "WORD",
+       .to = &Of::hold_volumes,
+       .words = {"corners", "volume"}},
       {"prisms", "Layers of prisms in the fluid on spheres and walls where there is room; none if absent",
        "N", &Of::prisms, 0, 20},
       {"prism_height", "Of all layers of prisms together, in radii; 0.1 if absent", "SHARE",
@@ -83,9 +94,15 @@ const std::vector<MeshKey>& mesh_keys() {
        .to = &Of::solids,
        .words = {"fluid", "all"}},
       {"cut",
-       "The part that is meshed, in the scene's unit: \"x = 1..4, y = 1..4, z = 0..5\"; its faces cut "
-       "spheres. With contact gap or shrink",
-       "BOX", &Of::cut},
+       "The part that is meshed, in the scene's unit: \"x = 1..4, y = 1..4, z = 0..5\", other planes that "
+       "close a convex part, or a file, part.stl; its faces cut spheres. In boxes, periodic ones too, "
+       "cylinders "
+       "and spheres, with contact gap or shrink",
+       "PART", &Of::cut},
+      {"patches",
+       "Flat walls that are patches of their own, by the planes that they lie in, for inlets and outlets: "
+       "\"inlet: z = 0, outlet: z = 40\", in the scene's unit",
+       "NAMES", &Of::patches},
       {"unit", "Of lengths in the files: m, mm, …; the scene's if absent, and always m for snappy", "UNIT",
        &Of::unit},
       {"order", "2: elements with middles of edges, on the true spheres; 1 if absent", "N", &Of::order, 1, 2},

@@ -11,6 +11,7 @@
 #include "bernal/core/text.hpp"
 #include "bernal/version.hpp"
 #include "mesh_files/mesh_file.hpp"
+#include "mesh_files/named_walls.hpp"
 #include "mesh_files/solids_to_mesh.hpp"
 #include "meshes/boundary_layer.hpp"
 #include "meshes/conforming_surface.hpp"
@@ -122,15 +123,15 @@ VolumeMesh filled_mesh(const ConformingSurface& surface, const Solids& solids, c
   const TetrahedraOptions tetrahedra{.for_gradients = mesh_writer_of(options.format).for_gradients};
   if (options.prisms == 0) return fill_with_layers(surface, tetrahedra, filled, monitor);
   PrismReport prisms;
-  VolumeMesh mesh =
-      fill_with_prisms(surface,
-                       {.layers = options.prisms,
-                        .height = options.prism_height,
-                        .growth = options.prism_growth,
-                        .per_gap = options.gap_edge,
-                        .sphere_edge = options.sphere_edge,
-                        .on_flat_walls = !solids.is_cut && !std::holds_alternative<Cylinder>(solids.domain)},
-                       tetrahedra, filled, prisms, monitor);
+  VolumeMesh mesh = fill_with_prisms(
+      surface,
+      {.layers = options.prisms,
+       .height = options.prism_height,
+       .growth = options.prism_growth,
+       .per_gap = options.gap_edge,
+       .sphere_edge = options.sphere_edge,
+       .on_flat_walls = !solids.is_cut() && !std::holds_alternative<Cylinder>(solids.domain)},
+      tetrahedra, filled, prisms, monitor);
   report.prisms = prisms.prisms;
   report.prism_ends = prisms.ends;
   report.prism_share = prisms.covered;
@@ -160,6 +161,7 @@ SurfaceMeshOptions sizes_of(const MeshFileOptions& options, bool is_surface) {
                            .neck_edge = options.neck_edge,
                            .per_gap = options.gap_edge,
                            .solids = options.solids,
+                           .hold_volumes = options.hold_volumes,
                            .per_layer = options.layer_edge};
   if (options.prisms > 0) sizes.wall_edge = 0.8 * sizes.sphere_edge;  // columns are as upright as on spheres
   if (!is_surface) return sizes;
@@ -167,6 +169,10 @@ SurfaceMeshOptions sizes_of(const MeshFileOptions& options, bool is_surface) {
   sizes.neck_edge *= finer;
   sizes.per_gap = any_gap;
   return sizes;
+}
+
+MeshGroups named_groups(const VolumeMesh& mesh, const Solids& solids, const Packing& packing) {
+  return groups_of(mesh, solids.domain, classes_of_mesh(packing), solids.part ? &*solids.part : nullptr);
 }
 
 /// The mesh, its names, and what it is of.
@@ -188,6 +194,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.is_surface = writer.format.is_surface;
   ConformingSurface surface = conforming_surface(solids, sizes_of(options, report.is_surface), monitor);
   name_spheres(surface, of_packing);
+  if (!options.patches.empty()) name_walls(surface, options.patches);
   take_surface(surface, report);
   // The surface states what is between its own walls.
   report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;
@@ -196,7 +203,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
     report.meshed_porosity = surface.statement.meshed_fluid_volume / report.domain_volume;
     report.groups.push_back({"fluid", surface.statement.meshed_fluid_volume, surface.statement.fluid_volume});
     VolumeMesh mesh = without_filling(std::move(surface));
-    MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
+    MeshGroups groups = named_groups(mesh, solids, packing);
     return {std::move(mesh), std::move(groups), std::move(solids)};
   }
   FillReport filled;
@@ -213,7 +220,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
     report.straight_edges = edges.kept_straight;
     report.parts.push_back({"second order", curving.seconds()});
   }
-  MeshGroups groups = groups_of(mesh, solids.domain, classes_of_mesh(packing));
+  MeshGroups groups = named_groups(mesh, solids, packing);
   take_mesh(mesh, groups, report);
   return {std::move(mesh), std::move(groups), std::move(solids)};
 }
@@ -275,6 +282,8 @@ void require_mesh_format(const MeshFileOptions& options, int dimension) {
   if (format.is_surface && options.solids)
     refuse(
         fmt::format("the format {} is for a mesh of the fluid alone; leave out ‹regions=all›", format.name));
+  if (options.hold_volumes && options.order > 1)
+    refuse("‹facets=volume› is for elements of first order: those of second order follow the spheres");
   if (options.prisms == 0) return;
   if (!format.has_prisms) refuse(fmt::format("prisms are not written in the format {}", format.name));
   if (options.solids || options.order > 1)

@@ -138,8 +138,8 @@ std::string write_mesh_for_openfoam(const MeshToWrite& file, StagedFolder& stage
 
 }  // namespace
 
-std::string type_of_patch(std::string_view name) {
-  return name == "floor" || name == "lid" ? "patch" : "wall";
+std::string type_of_patch(const MeshGroups& groups, std::size_t surface) {
+  return groups.is_opening[surface] ? "patch" : "wall";
 }
 
 void write_system_of_openfoam(const MeshToWrite& file, StagedFolder& staged) {

@@ -161,7 +161,7 @@ class BoundaryFaces {
   void add_surface(std::uint32_t surface) {
     const std::uint32_t end = end_of(mesh_, of_surface_[surface].front());
     const std::string& name = groups_.surfaces[surface];
-    PolyMesh::Patch patch{.name = name, .type = type_of_patch(name), .first = poly_.faces.size()};
+    PolyMesh::Patch patch{.name = name, .type = type_of_patch(groups_, surface), .first = poly_.faces.size()};
     std::vector<std::uint32_t> triangles = of_surface_[surface];
     if (end != none) {
       const std::size_t axis = end / 2;

@@ -64,7 +64,7 @@ PartsOfSurface parts_of(const MeshToWrite& file, double block_edge) {
     SnappyCase::Part& part = made.parts.emplace_back();
     part.name = count[group] == 1 ? name : fmt::format("{}_{}", name, least - level_on_spheres + 1);
     if (part.name != name) part.group = name;
-    part.type = type_of_patch(name);
+    part.type = type_of_patch(file.groups, group);
     if (part.type == "wall" && name != "necks" && name != "caps") part.layers = file.options.prisms;
     part.level = least;
     part.level_in_curves = least;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "mesh_files/mesh_file.hpp"
 #include "meshes/flat_walls.hpp"
 #include "solids/cut_out.hpp"
+#include "solids/part_in_file.hpp"
 
 namespace bernal {
 namespace {
@@ -35,33 +37,55 @@ InnerSpheres shells_of(const Packing& packing, const MeshFileOptions& options) {
   return shells;
 }
 
-/// The box that a text like "x = 1..4, y = 1..4, z = 0..5" names.
-Bounds<3> box_in(std::string_view text, Unit unit) {
+/// The box between slabs along the three axes; nothing where they are others.
+std::optional<Bounds<3>> box_between(const std::vector<LowerPart>& slabs) {
   Bounds<3> box;
   std::array<bool, 3> has{};
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    LowerPart slab;
-    try {
-      slab = slab_in(text.substr(from, comma - from), unit);
-    } catch (const Error&) {
-      break;
-    }
-    from = comma + 1;
+  for (const LowerPart& slab : slabs) {
     int axis = 0;
     slab.direction.cwiseAbs().maxCoeff(&axis);
     if (std::abs(slab.direction[axis]) < 1 || has[static_cast<std::size_t>(axis)] ||
         !std::isfinite(slab.from) || !std::isfinite(slab.height))
-      break;
+      return {};
     has[static_cast<std::size_t>(axis)] = true;
     const double one = -slab.direction[axis] * slab.from, other = -slab.direction[axis] * slab.height;
     box.lower[axis] = std::min(one, other);
     box.upper[axis] = std::max(one, other);
-    if (from > text.size() && has[0] && has[1] && has[2]) return box;
   }
-  throw Error(ErrorCode::bad_argument,
-              fmt::format("‹cut› takes a box such as \"x = 1..4, y = 1..4, z = 0..5\", not \"{}\"",
-                          plain_text(text)));
+  if (slabs.size() != 3) return {};
+  return box;
+}
+
+/// The part that a text names: "x = 1..4, y = 1..4, z = 0..5", other planes, or a file.
+ConvexPart part_named(std::string_view text, const Packing& packing) {
+  const Unit unit = packing.scene.unit;
+  if (is_file_of_part(text))
+    return part_in_file(text, unit, packing.spheres.empty() ? 0 : std::ranges::min(packing.spheres.r));
+  std::vector<LowerPart> slabs;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    try {
+      slabs.push_back(slab_in(text.substr(from, comma - from), unit));
+    } catch (const Error&) {
+      throw Error(ErrorCode::bad_argument,
+                  fmt::format("‹cut› takes planes such as \"x = 1..4, y = 1..4, z = 0..5\" or a file such as "
+                              "part.stl, not \"{}\"",
+                              plain_text(text)));
+    }
+    from = comma + 1;
+  }
+  if (const auto box = box_between(slabs)) return part_of_box(*box);
+  std::vector<HalfSpace> planes;
+  for (const LowerPart& slab : slabs) {
+    if (std::isfinite(slab.from)) planes.push_back({slab.direction, -slab.from});
+    if (std::isfinite(slab.height)) planes.push_back({-slab.direction, slab.height});
+  }
+  constexpr double far = 100;
+  Bounds<3> around = bounds_of(packing.domain);
+  const Vector<3> beyond = Vector<3>::Constant(far * around.diagonal());
+  around.lower -= beyond;
+  around.upper += beyond;
+  return part_between(planes, around);
 }
 
 }  // namespace
@@ -81,11 +105,13 @@ SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& optio
   Solids& solids = in_walls.solids;
   report.cleared = solids.cleared;
   if (options.cut.empty()) return {std::move(solids), {}};
-  CutOut part = cut_out(solids, box_in(options.cut, packing.scene.unit), options.gap);
+  CutOut part = cut_out(solids, part_named(options.cut, packing), options.gap);
   if (part.solids.spheres.empty())
-    throw Error(ErrorCode::bad_argument, "there are no spheres in the box of ‹cut›");
+    throw Error(ErrorCode::bad_argument, "there are no spheres in the part of ‹cut›");
   report.spheres = part.solids.spheres.size();
   report.domain_volume = volume_of(part.solids.domain);
+  report.packed_porosity =
+      1 - volume_in(*part.solids.part, packing.spheres, packing.domain) / report.domain_volume;
   report.cleared = part.solids.cleared;
   for (const Piece& piece : part.solids.pieces) report.clipped += !piece.cuts.empty();
   return {std::move(part.solids), std::move(part.of_packing)};

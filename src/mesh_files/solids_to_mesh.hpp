@@ -16,8 +16,8 @@ struct SolidsToMesh {
 };
 
 /// With contacts treated as the options ask for, the shells of layers where solids are meshed, and of
-/// `options.cut` what lies in that box. Says in the report what that made of spheres and walls. Throws
-/// Error{bad_argument} where the text of `cut` names no box, or none with spheres in it.
+/// `options.cut` what lies in that part. Says in the report what that made of spheres and walls. Throws
+/// Error{bad_argument} where the text of `cut` names no convex part, or none with spheres in it.
 SolidsToMesh solids_to_mesh(const Packing& packing, const MeshFileOptions& options, const Monitor& monitor,
                             BedMeshReport& report);
 

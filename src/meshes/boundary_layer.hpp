@@ -16,7 +16,7 @@ struct BoundaryLayerOptions {
   double growth = 1.2;       ///< height of a layer over that of the one below
   double per_gap = 2;        ///< as of SurfaceMeshOptions: edges in widths of the gap that prisms leave
   double sphere_edge = 0.3;  ///< as of SurfaceMeshOptions
-  bool on_flat_walls = true;  ///< else walls that are planes have none: inlets, outlets, faces of a cut box
+  bool on_flat_walls = true;  ///< else walls that are planes have none: lids, faces of a cut box
 };
 
 /// Heights of the tops of layers over the height of all, ascending to 1.

@@ -91,19 +91,12 @@ class Circles {
   /// The vertex where two circles of a piece cross; `at`: about where. At ends it is that of the image at the
   /// lower ends, moved.
   std::uint32_t corner(std::uint32_t p, std::size_t a, std::size_t b, const Vector<3>& at) {
-    for (const std::size_t c : {a, b}) {
-      const Circle& circle = draft_.pieces[p].circles[c];
-      if (circle.kind != Circle::Kind::end || !draft_.is_lifted(circle.face)) continue;
-      const int axis = circle.face / 2;
+    if (const int face = upper_among(p, std::array{a, b}); face >= 0) {
+      const int axis = face / 2;
       const std::uint32_t lower = known(piece_before(p, axis));
-      const auto same = [&](std::size_t of) {
-        const Circle& wanted = draft_.pieces[p].circles[of];
-        if (wanted.kind == Circle::Kind::end)
-          return circle_at(lower, of == c ? wanted.face - 1 : wanted.face);
-        return same_as(lower, wanted);
-      };
       const Vector<3> moved = at - draft_.boundary.edges[axis] * Vector<3>::Unit(axis);
-      return draft_.lifted(axis, corner(lower, same(a), same(b), moved));
+      return draft_.lifted(
+          axis, corner(lower, circle_before(p, lower, a, face), circle_before(p, lower, b, face), moved));
     }
     if (a > b) std::swap(a, b);
     const Circle &one = draft_.pieces[p].circles[a], &other = draft_.pieces[p].circles[b];
@@ -111,8 +104,7 @@ class Circles {
     const auto [entry, is_new] = corners_.try_emplace({p, a, b, side}, 0);
     if (is_new) {
       const Vector<3> q = crossing(p, a, b, side);
-      const double size = size_at(p, q);
-      entry->second = add(p, std::array{a, b}, q, size);
+      entry->second = add(p, std::array{a, b}, q, size_at(p, q));
     }
     return entry->second;
   }
@@ -137,7 +129,7 @@ class Circles {
   void put_on_ends(std::uint32_t p, std::span<const std::size_t> circles, Vector<3>& q) const {
     for (const std::size_t c : circles)
       if (const Circle& circle = draft_.pieces[p].circles[c]; circle.kind == Circle::Kind::end)
-        q[circle.face / 2] = draft_.end_at(circle.face);
+        draft_.put_on_end(circle.face, q);
   }
 
   bool has_end(std::uint32_t p, std::span<const std::size_t> circles) const {
@@ -209,7 +201,22 @@ class Circles {
     const Vector<3> along = one.normal.cross(other.normal).normalized();
     std::array<double, 2> ends = {-std::sqrt(squared), std::sqrt(squared)};
     std::array<std::size_t, 2> by = {a, a};
-    for (std::size_t k = 0; k < circles.size(); ++k) {
+    std::array<std::uint32_t, 2> corners = {Delaunay::none, Delaunay::none};
+    const std::optional<ConvexPart>& part = draft_.solids.part;
+    if (part) {
+      const auto edge =
+          part->edge_between(static_cast<std::uint32_t>(one.face), static_cast<std::uint32_t>(other.face));
+      if (!edge) return {};
+      const bool is_turned = part->edges[*edge].along.dot(along) < 0;
+      for (const std::size_t e : {0, 1}) {
+        const std::uint32_t there = part->edges[*edge].corners[is_turned ? 1 - e : e];
+        const double t = (part->corners[there].point - piece.center - foot).dot(along);
+        if (e == 1 ? t >= ends[1] : t <= ends[0]) continue;
+        ends[e] = t;
+        corners[e] = there;
+      }
+    }
+    for (std::size_t k = 0; k < circles.size() && !part; ++k) {
       if (k == a || k == b) continue;
       const double rise = circles[k].normal.dot(along), left = circles[k].depth - circles[k].normal.dot(foot);
       if (rise > 0 && left / rise < ends[1]) {
@@ -233,6 +240,8 @@ class Circles {
     }
     const auto at = [&](double t) { return Vector<3>(piece.center + foot + t * along); };
     const auto end = [&](std::size_t e) {
+      if (corners[e] != Delaunay::none)
+        return draft_.vertex_at(part->corners[corners[e]].point, chord_size(p, both));
       return by[e] == a ? corner(p, a, b, at(ends[e])) : triple(p, {a, b, by[e]});
     };
     struct End {
@@ -307,13 +316,14 @@ class Circles {
     const auto at = [&](double t) {
       Vector<3> q =
           piece.center + circle.depth * circle.normal + circle.radius * (std::cos(t) * u + std::sin(t) * v);
-      if (circle.kind == Circle::Kind::end) q[circle.face / 2] = draft_.end_at(circle.face);
+      if (circle.kind == Circle::Kind::end) draft_.put_on_end(circle.face, q);
       return q;
     };
     for (const Arc& arc : arcs_on(draft_.pieces[p], c)) {
       circle.is_whole = arc.ended_by[0] == c;
       const std::vector<double> angles =
           draft_.pieces[p].is_copied ? copied_angles(p, circle, arc) : angles_of(p, circle, arc, at);
+      circle.ended_by.push_back(arc.ended_by);
       auto& chain = circle.chains.emplace_back();
       if (!circle.is_whole) chain.push_back(corner(p, c, arc.ended_by[0], at(arc.from)));
       for (const double t : angles) {

@@ -65,7 +65,7 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
                             name_of(solids.domain)));
   SurfaceDraft draft(solids, options);
   deepen_caps(draft);
-  if (mesh != nullptr) draft.flat_walls = flat_walls_of(*mesh);
+  if (mesh != nullptr && !solids.is_cut()) draft.flat_walls = flat_walls_of(*mesh);
   add_necks(draft);
   if (options.solids) add_shells(draft);
   add_circles(draft);
@@ -76,7 +76,9 @@ ConformingSurface conforming_surface(const Solids& solids, const SurfaceMeshOpti
   monitor.report({"surface", -1, "walls and ends of periods"});
   mesh_flat_faces(draft);
   mesh_copied_shells(draft);
-  if (box != nullptr) {
+  if (solids.part) {
+    mesh_cut_faces(draft, *solids.part);
+  } else if (box != nullptr) {
     mesh_box(draft, *box);
   } else if (cylinder != nullptr) {
     mesh_cylinder(draft, *cylinder);

@@ -30,6 +30,7 @@ struct SurfacePatch {
   std::array<std::int32_t, 2> regions = {nothing, nothing};
   static constexpr std::int32_t nothing = -1;
   RoundSurface shape = {};  ///< what the triangles stand for
+  std::string name = {};    ///< of a wall that has one of its own, where fluid enters or leaves
 };
 
 /// What a volume mesher fills.
@@ -100,14 +101,17 @@ struct SurfaceMeshOptions {
   double neck_edge = 0.15;  ///< edges where necks begin, in radii of the smaller sphere
   double per_gap = 2;       ///< edges where surfaces are near each other, in widths of the gap there
   bool solids = false;      ///< whether what is inside spheres and necks is a region too
-  double per_layer = 6;     ///< edges on spheres with thin layers, in thicknesses of these; half of that
-                            ///< where an end of a period cuts a layer so that no prisms fit into it
+  /// Whether facets of spheres hold the volumes of these, see `hold_volume`, or their corners lie on them.
+  bool hold_volumes = false;
+  double per_layer = 6;  ///< edges on spheres with thin layers, in thicknesses of these; half of that
+                         ///< where an end of a period cuts a layer so that no prisms fit into it
 };
 
 /// The surface of a bed, made without a Boolean kernel: points along the circles in which spheres are cut,
 /// the Delaunay triangulation of each sphere outside of them, refined to the asked sizes, and walls and ends
 /// of periods with the same points. Vertices lie on the true surfaces to rounding, so triangles of spheres
-/// that do not overlap do not cross. The same for any number of threads.
+/// that do not overlap do not cross; with `hold_volumes` those inside of spheres' patches stand off them by
+/// at most a fifth of the room to the next surface. The same for any number of threads.
 ///
 /// Walls of a mesh are divided into their planar parts, see `PlanarWalls`, and those that are facets of a
 /// curved wall are joined, see `SmoothWalls`; each is triangulated anew. Corners lie on the mesh, and

@@ -15,7 +15,7 @@ class FlatFaces {
       for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
         for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c) {
           const Circle& circle = draft_.pieces[p].circles[c];
-          if (circle.chains.empty() ||
+          if (!has_face(draft_.pieces[p], c) ||
               (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) != upper)
             continue;
           if (circle.kind == Circle::Kind::contact || draft_.options.solids) make_face(p, c);
@@ -30,6 +30,14 @@ class FlatFaces {
   }
 
  private:
+  /// Whether something of a circle's disc is left: a ball that holds a whole face of a part that is cut out
+  /// has chords there alone.
+  bool has_face(const DraftPiece& piece, std::size_t c) const {
+    if (!piece.circles[c].chains.empty()) return true;
+    return draft_.solids.is_cut() && std::ranges::any_of(piece.chords, [&](const Chord& chord) {
+             return chord.circles[0] == c || chord.circles[1] == c;
+           });
+  }
   /// Inside a flat face sizes are those of spheres; smaller ones follow from the edges around it.
   std::function<double(const Vector<3>&)> size_in(std::uint32_t p) const {
     const DraftPiece& piece = draft_.pieces[p];
@@ -61,13 +69,11 @@ class FlatFaces {
   /// In the plane through a point; `face`: the end of a period that it is, or -1.
   PlanarPart part_in(const Vector<3>& normal, const Vector<3>& origin, int face) {
     const Vector<3> u = normal.unitOrthogonal(), v = normal.cross(u);
-    const int axis = face < 0 ? -1 : face / 2;
-    const double at = face < 0 ? 0 : draft_.end_at(face);
     return {draft_,
             [=](const Vector<3>& p) { return Vector<3>((p - origin).dot(u), (p - origin).dot(v), 0); },
-            [=](const Vector<3>& p) {
+            [=, &draft = draft_](const Vector<3>& p) {
               Vector<3> q = origin + p[0] * u + p[1] * v;
-              if (axis >= 0) q[axis] = at;
+              if (face >= 0) draft.put_on_end(face, q);
               return q;
             }};
   }
@@ -103,7 +109,7 @@ class FlatFaces {
     const double cap = draft_.sizes.at_caps(piece.piece.radius);
     part.mesh(number, false,
               circle.kind == Circle::Kind::contact ? [cap](const Vector<3>&) { return cap; } : size_in(p));
-    if (circle.kind == Circle::Kind::end)
+    if (circle.kind == Circle::Kind::end && !draft_.solids.is_cut())
       lower_[{piece.piece.sphere, piece.piece.image, circle.face / 2, piece.layer}] = part.triangles();
   }
 

@@ -117,10 +117,16 @@ class CopiedShells {
           shift[k] = sum / ((1 + stiffness) * static_cast<double>(beside[k].size()));
         }
     }
+    // Facets that hold the volume stand off both spheres in proportion.
+    const auto radius_below = [&](std::uint32_t id) {
+      if (!draft_.options.hold_volumes) return piece.piece.radius;
+      return piece.piece.radius * (draft_.made.vertices[id] - center).norm() /
+             draft_.pieces[piece.around].piece.radius;
+    };
     for (std::size_t k = 0; k < ids.size(); ++k)
       if (!is_given[k])
         below_[ids[k]] =
-            draft_.add_vertex(center + piece.piece.radius * (direction(ids[k]) + shift[k]).normalized(),
+            draft_.add_vertex(center + radius_below(ids[k]) * (direction(ids[k]) + shift[k]).normalized(),
                               draft_.made.size[ids[k]]);
   }
 

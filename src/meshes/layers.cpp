@@ -7,7 +7,6 @@
 
 #include "bernal/core/error.hpp"
 #include "meshes/surface_draft.hpp"
-#include "solids/cut_out.hpp"
 
 namespace bernal {
 namespace {
@@ -83,17 +82,43 @@ class ShellsOfPieces {
   void look_at(const DraftPiece& piece, std::span<const double> radii, Plan& plan) const {
     for (const Circle& circle : piece.circles)
       if (circle.kind == Circle::Kind::neck && draft_.necks[circle.neck].is_cut) plan.is_copied.back() = 0;
-    std::vector<double> squares = {0};  // of distances of planes, lines and corners from the centre
-    for (const Cut& cut : piece.piece.cuts) {
-      if (cut.face == Cut::contact) continue;
-      const double depth = cut.keeps.offset - cut.keeps.normal.dot(piece.piece.center);
-      for (std::size_t k = squares.size(); k-- > 0;) squares.push_back(squares[k] + depth * depth);
-    }
+    const std::vector<double> squares = squares_of(piece.piece);
     for (std::size_t k = 0; k < radii.size(); ++k) {
       const double inner = well_within * radii[k], outer = radius_at(piece.piece.sphere, k + 1);
       for (const double square : squares)
         if (square > inner * inner && square < outer * outer) plan.is_copied[k] = 0;
     }
+  }
+
+  /// Of the distances of planes, lines and corners that cut a piece from its centre.
+  std::vector<double> squares_of(const Piece& piece) const {
+    std::vector<double> squares = {0};
+    std::vector<char> is_cut;  // by face
+    for (const Cut& cut : piece.cuts) {
+      if (cut.face == Cut::contact) continue;
+      const double depth = cut.keeps.offset - cut.keeps.normal.dot(piece.center);
+      if (!draft_.solids.part || draft_.solids.part->is_box) {  // planes at right angles
+        for (std::size_t k = squares.size(); k-- > 0;) squares.push_back(squares[k] + depth * depth);
+        continue;
+      }
+      squares.push_back(depth * depth);
+      is_cut.resize(draft_.solids.part->faces.size(), 0);
+      is_cut[static_cast<std::size_t>(cut.face)] = 1;
+    }
+    if (is_cut.empty()) return squares;
+    const ConvexPart& part = *draft_.solids.part;
+    const auto are_cut = [&](std::span<const std::uint32_t> faces) {
+      return std::ranges::all_of(faces, [&](std::uint32_t face) { return is_cut[face]; });
+    };
+    const auto from = [&](std::uint32_t corner) {
+      return Vector<3>(part.corners[corner].point - piece.center);
+    };
+    for (const ConvexPart::Edge& edge : part.edges)
+      if (const Vector<3> d = from(edge.corners[0]); are_cut(edge.faces))
+        squares.push_back((d - d.dot(edge.along) * edge.along).squaredNorm());
+    for (std::uint32_t corner = 0; corner < part.corners.size(); ++corner)
+      if (are_cut(part.corners[corner].faces)) squares.push_back(from(corner).squaredNorm());
+    return squares;
   }
 
   double least_edge_on(std::uint32_t sphere) const {
@@ -125,11 +150,10 @@ class ShellsOfPieces {
 
   /// The pieces of balls in the domain.
   std::vector<Piece> pieces_within(const Spheres<dynamic>& balls) const {
-    if (!draft_.solids.is_cut) return pieces_of(balls, draft_.solids.domain);
+    if (!draft_.solids.part) return pieces_of(balls, draft_.solids.domain);
     std::vector<Piece> pieces;
-    const Bounds<3> box = bounds_of(draft_.solids.domain);
     for (std::uint32_t i = 0; i < balls.size(); ++i)
-      if (auto piece = piece_in_box(balls.center(i), balls.r[i], box)) {
+      if (auto piece = piece_in(*draft_.solids.part, balls.center(i), balls.r[i])) {
         piece->sphere = i;
         pieces.push_back(std::move(*piece));
       }

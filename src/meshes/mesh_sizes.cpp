@@ -53,14 +53,14 @@ MeshSizes::MeshSizes(const Solids& solids, const SurfaceMeshOptions& options)
       grid_(spheres_, boundary_, 2 * largest_of(solids.spheres.r)),
       largest_(largest_of(solids.spheres.r)),
       has_necks_(joins(solids.contacts.treatment)) {
-  if (!std::holds_alternative<Mesh>(solids.domain)) return;
+  if (!std::holds_alternative<Mesh>(solids.domain) || solids.is_cut()) return;
   container_ = local_container(solids.domain, nullptr);
   frame_ = frame_of(solids.domain);
 }
 
-std::vector<NearBall> MeshSizes::near(const Vector<3>& center, std::uint32_t sphere) const {
+std::vector<NearBall> MeshSizes::near(const Vector<3>& center, std::uint32_t sphere, double least) const {
   std::vector<NearBall> found;
-  const double r = spheres_.r[sphere], reach = options_.sphere_edge * r / options_.per_gap;
+  const double r = spheres_.r[sphere], reach = std::max(least, options_.sphere_edge * r / options_.per_gap);
   grid_.for_each_near(boundary_.wrap(center), r + largest_ + reach, [&](std::uint32_t j, const Vector<3>& d) {
     const double distance = d.norm(), rj = spheres_.r[j], gap = distance - r - rj;
     if (gap > reach || distance < 1e-9 * r) return;
@@ -81,7 +81,7 @@ double MeshSizes::floor_at(double gap, double scale, double least_radius) const 
 
 double MeshSizes::from_walls(const Vector<3>& p) const {
   double least = std::numeric_limits<double>::infinity();
-  if (solids_.is_cut) return least;
+  if (solids_.is_cut()) return least;
   if (const auto* box = std::get_if<Box>(&solids_.domain)) {
     for (int k = 0; k < 3; ++k)
       if (!box->repeats(k))
@@ -101,10 +101,9 @@ double MeshSizes::from_walls(const Vector<3>& p) const {
 
 double MeshSizes::from_ends(const Vector<3>& p) const {
   double least = std::numeric_limits<double>::infinity();
-  if (solids_.is_cut) {
-    const Box& box = std::get<Box>(solids_.domain);
-    for (int k = 0; k < 3; ++k)
-      least = std::min({least, std::abs(p[k] - box.corner[k]), std::abs(box.corner[k] + box.size[k] - p[k])});
+  if (solids_.part) {
+    for (const ConvexPart::Face& face : solids_.part->faces)
+      least = std::min(least, std::abs(face.keeps.offset - face.keeps.normal.dot(p)));
     return least;
   }
   for (int k = 0; k < 3; ++k)

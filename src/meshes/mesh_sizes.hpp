@@ -29,8 +29,9 @@ class MeshSizes {
 
   MeshSizes(const Solids&, const SurfaceMeshOptions&);
 
-  /// Balls whose surfaces are near that of the sphere around `center`, itself left out; all images.
-  std::vector<NearBall> near(const Vector<3>& center, std::uint32_t sphere) const;
+  /// Balls whose surfaces are near that of the sphere around `center`, itself left out; all images. At least
+  /// those that are not farther than `reach`.
+  std::vector<NearBall> near(const Vector<3>& center, std::uint32_t sphere, double reach = 0) const;
   /// Edges on a sphere at p, in the scene.
   double on_sphere(const Vector<3>& p, const Vector<3>& center, double radius, bool is_cut_at_end,
                    const std::vector<NearBall>& near) const;

@@ -4,11 +4,17 @@
 #include <numbers>
 #include <optional>
 
+#include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
+#include "meshes/hold_volume.hpp"
 #include "meshes/planar_part.hpp"
 
 namespace bernal {
 namespace {
+
+/// Of the radius: surfaces that are nearer limit by how much facets that hold the volume stand off a sphere.
+/// With long edges it is their square, a fifth of which is more than they ask for.
+constexpr double reach_of_room = 0.15;
 
 double distance_to_circle(const Vector<3>& p, const Circle& circle) {
   const double along = p.dot(circle.normal) - circle.depth;
@@ -47,8 +53,10 @@ void add_chain(BoundedPart& patch, Numbering& number, const std::vector<std::uin
 PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
   const Vector<3> center = part.piece.center;
   const double r = part.piece.radius;
+  const double longest = draft.options.sphere_edge;
+  const double reach = draft.options.hold_volumes ? std::max(reach_of_room, longest * longest) * r : 0;
   const std::vector<NearBall> near =
-      part.is_outer() ? draft.sizes.near(center, part.piece.sphere) : std::vector<NearBall>();
+      part.is_outer() ? draft.sizes.near(center, part.piece.sphere, reach) : std::vector<NearBall>();
   const bool is_cut_at_end =
       std::ranges::any_of(part.circles, [](const Circle& c) { return c.kind == Circle::Kind::end; });
   struct Source {
@@ -71,6 +79,7 @@ PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
           std::min({draft.options.sphere_edge * r, part.largest_edge, std::numbers::pi / 4 * circle.radius});
     sources.push_back({&circle, edge});
   }
+  if (!part.circles.empty() && number.ids().empty()) return {};  // nothing of the sphere is left
   for (const std::uint32_t id : number.ids()) patch.points.push_back(draft.made.vertices[id] - center);
   patch.size = [&](const Vector<3>& p) {
     double size = draft.size_on(part, center + p, is_cut_at_end, near);
@@ -93,10 +102,15 @@ PartMesh sphere_mesh(const SurfaceDraft& draft, const DraftPiece& part) {
       patch.starts.push_back(p);
   }
   PartMesh made{number.ids(), mesh_patch(patch), {}};
-  for (Vector<3>& p : made.mesh.added) {
-    made.sizes.push_back(patch.size(p));
-    p += center;
-  }
+  for (const Vector<3>& p : made.mesh.added) made.sizes.push_back(patch.size(p));
+  if (draft.options.hold_volumes)
+    hold_volume(patch.points, made.mesh, r, [&](const Vector<3>& p) {
+      double room = std::min({reach, draft.sizes.from_walls(center + p), draft.sizes.from_ends(center + p)});
+      for (const NearBall& ball : near)
+        room = std::min(room, (center + p - ball.center).norm() - ball.radius);
+      return room;
+    });
+  for (Vector<3>& p : made.mesh.added) p += center;
   return made;
 }
 
@@ -194,7 +208,8 @@ std::optional<double> angle_without(std::vector<std::array<double, 2>> arcs) {
 
 /// Triangles of what is left of a neck's side in the domain, which is unrolled where that does not go all the
 /// way around, so that edges of its boundary are as straight in the plane as they are. Else it is mapped by
-/// angle and the exponential of the height, which keeps angles.
+/// angle and the exponential of the height, which keeps angles. In this map edges of a circle are chords,
+/// which may cross what is near it on a thin neck: then heights are stretched until they do not.
 void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t patch) {
   const double a = neck.radius, middle = 0.5 * (neck.begin + neck.end);
   const Vector<3> around = neck.around();
@@ -223,9 +238,10 @@ void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t pat
       arcs.push_back({from, std::remainder(to - from, 2 * std::numbers::pi)});
     }
   const std::optional<double> cut = angle_without(std::move(arcs));
+  double stretch = 1;
   const auto flat = [&](const Vector<3>& p) {
     if (!cut) {
-      const double r = a * std::exp(height_of(p) / a);
+      const double r = a * std::exp(stretch * height_of(p) / a);
       return Vector<3>(r * std::cos(angle_of(p)), r * std::sin(angle_of(p)), 0);
     }
     const double turned = std::remainder(angle_of(p) - *cut - std::numbers::pi, 2 * std::numbers::pi);
@@ -233,11 +249,17 @@ void mesh_cut_neck(SurfaceDraft& draft, const DraftNeck& neck, std::uint32_t pat
   };
   const auto back = [&](const Vector<3>& p) {
     return cut ? at(p[0], p[1] / a + *cut + std::numbers::pi)
-               : at(a * std::log(p.norm() / a), std::atan2(p[1], p[0]));
+               : at(a * std::log(p.norm() / a) / stretch, std::atan2(p[1], p[0]));
   };
-  PlanarPart part(draft, flat, back);
-  for (const auto& [chain, is_closed] : chains) part.add_chain(chain, is_closed);
-  part.mesh(patch, true, [&](const Vector<3>&) { return neck.edge; });
+  constexpr double most_stretch = 64;
+  for (;; stretch *= 2) try {
+      PlanarPart part(draft, flat, back);
+      for (const auto& [chain, is_closed] : chains) part.add_chain(chain, is_closed);
+      part.mesh(patch, true, [&](const Vector<3>&) { return neck.edge; });
+      return;
+    } catch (const Error&) {
+      if (cut || stretch >= most_stretch) throw;
+    }
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ class PrismColumns {
 
   bool may_have_prisms(const SurfacePatch& patch) const {
     if (patch.kind == SurfacePatch::Kind::sphere) return patch.regions[1] == 0;
-    return patch.kind == SurfacePatch::Kind::wall && patch.regions[0] == 0 &&
+    return patch.kind == SurfacePatch::Kind::wall && patch.regions[0] == 0 && patch.name.empty() &&
            (options_.on_flat_walls || patch.shape.is_round());
   }
 

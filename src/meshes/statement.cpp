@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "meshes/surface_draft.hpp"
-#include "solids/cut_out.hpp"
 
 namespace bernal {
 
@@ -31,8 +30,9 @@ double volume_of_ball(double radius) { return 4 * std::numbers::pi / 3 * radius 
 
 /// The volume of a ball in the domain: of all its images together.
 double volume_within(const SurfaceDraft& draft, const Vector<3>& center, double radius) {
-  return draft.solids.is_cut ? volume_in_box(center, radius, bounds_of(draft.solids.domain))
-                             : volume_of_ball(radius);
+  if (!draft.solids.part) return volume_of_ball(radius);
+  const std::optional<Piece> piece = piece_in(*draft.solids.part, center, radius);
+  return piece ? volume_of(*piece) : 0;
 }
 
 /// What necks take of each sphere, and the volume of each neck with that; 0 for images of others.
@@ -58,9 +58,9 @@ NeckVolumes neck_volumes(const SurfaceDraft& draft) {
 }
 
 double volume_of_spheres(const SurfaceDraft& draft) {
-  if (!draft.solids.is_cut) return volume_of_balls(draft.solids.spheres);
+  if (!draft.solids.part) return volume_of_balls(draft.solids.spheres);
   double sum = 0;
-  for (const Piece& piece : draft.solids.pieces) sum += volume_within(draft, piece.center, piece.radius);
+  for (const Piece& piece : draft.solids.pieces) sum += volume_of(piece);
   return sum;
 }
 

@@ -28,6 +28,7 @@ struct Circle {
   /// Parts outside of the other circles of the piece, counterclockwise about the normal; a whole circle does
   /// not repeat its first point.
   std::vector<std::vector<std::uint32_t>> chains = {};
+  std::vector<std::array<std::size_t, 2>> ended_by = {};  ///< of each chain: the circles where it ends
   std::vector<std::size_t> chains_around = {};  ///< of a copied piece: which ones of the piece around it
   bool is_whole = false;
 };
@@ -92,13 +93,13 @@ struct DraftNeck : NeckShape {
 /// A surface in the making.
 struct SurfaceDraft {
   SurfaceDraft(const Solids& given, const SurfaceMeshOptions& asked)
-      : solids(given), options(asked), boundary(ends_of(given)), sizes(given, asked) {
+      : solids(given), options(asked), boundary(boundary_of<3>(given.domain)), sizes(given, asked) {
     for (const Piece& piece : solids.pieces) add_piece({piece});
   }
 
   const Solids& solids;
   const SurfaceMeshOptions& options;
-  Boundary<3> boundary;  ///< the ends of periods, or of a box that is cut out
+  Boundary<3> boundary;  ///< the ends of periods
   MeshSizes sizes;
   std::optional<PlanarWalls> flat_walls = {};  ///< of a mesh
   std::vector<DraftPiece> pieces = {};
@@ -145,12 +146,21 @@ struct SurfaceDraft {
     return entry->second;
   }
   /// Whether what is at this end is copied from the opposite end of a period.
-  bool is_lifted(int face) const { return face % 2 == 1 && !solids.is_cut; }
+  bool is_lifted(int face) const { return face % 2 == 1 && !solids.is_cut(); }
   double end_at(int face) const {
     return boundary.origin[face / 2] + (face % 2 == 1 ? boundary.edges[face / 2] : 0.0);
   }
+  /// Gives a point that lies on an end of a period, or a face of a part that is cut out, to rounding the
+  /// coordinate that all points there have exactly, if any.
+  void put_on_end(int face, Vector<3>& p) const {
+    if (solids.part) {
+      solids.part->put_on(static_cast<std::uint32_t>(face), p);
+    } else {
+      p[face / 2] = end_at(face);
+    }
+  }
   SurfacePatch::Kind kind_of_ends() const {
-    return solids.is_cut ? SurfacePatch::Kind::wall : SurfacePatch::Kind::period_end;
+    return solids.is_cut() ? SurfacePatch::Kind::wall : SurfacePatch::Kind::period_end;
   }
   std::uint32_t add_patch(const SurfacePatch& patch) {
     made.patches.push_back(patch);
@@ -181,12 +191,6 @@ struct SurfaceDraft {
   }
 
  private:
-  static Boundary<3> ends_of(const Solids& of) {
-    if (!of.is_cut) return boundary_of<3>(of.domain);
-    const Box& box = std::get<Box>(of.domain);
-    return {.edges = box.size, .origin = box.corner};
-  }
-
   std::map<std::tuple<std::uint32_t, std::array<int, 3>, std::uint32_t>, std::uint32_t> numbers_;
   std::map<std::array<double, 3>, std::uint32_t> at_;
   std::array<std::unordered_map<std::uint32_t, std::uint32_t>, 3> lifted_;
@@ -232,6 +236,7 @@ void mesh_box(SurfaceDraft&, const Box&);
 void mesh_cylinder(SurfaceDraft&, const Cylinder&);
 void mesh_ball(SurfaceDraft&, const Sphere&);
 void mesh_flat_walls(SurfaceDraft&, const Mesh&);
+void mesh_cut_faces(SurfaceDraft&, const ConvexPart&);
 /// A point inside a piece and not near its cuts.
 Vector<3> inner_point(const Piece&);
 /// Regions with points inside.

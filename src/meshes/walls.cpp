@@ -56,7 +56,7 @@ bool is_in_neck(const DraftNeck& neck, const Vector<3>& p) {
 
 class BoxWalls {
  public:
-  BoxWalls(SurfaceDraft& draft, const Box& box) : draft_(draft), is_cut_(draft.solids.is_cut) {
+  BoxWalls(SurfaceDraft& draft, const Box& box) : draft_(draft) {
     for (int k = 0; k < 3; ++k) {
       repeats_[k] = box.repeats(k);
       ends_[0][k] = box.corner[k];
@@ -73,7 +73,7 @@ class BoxWalls {
   }
 
  private:
-  bool cuts_spheres(int axis) const { return repeats_[static_cast<std::size_t>(axis)] || is_cut_; }
+  bool cuts_spheres(int axis) const { return repeats_[static_cast<std::size_t>(axis)]; }
   std::vector<std::vector<std::uint32_t>>& line(int m, int a, int b) {
     return lines_[static_cast<std::size_t>(4 * m + 2 * b + a)];
   }
@@ -187,7 +187,6 @@ class BoxWalls {
   }
 
   SurfaceDraft& draft_;
-  bool is_cut_;  ///< whether faces cut spheres without being ends of periods
   std::array<bool, 3> repeats_{};
   std::array<Vector<3>, 2> ends_;
   std::array<std::vector<std::vector<std::uint32_t>>, 12> lines_;

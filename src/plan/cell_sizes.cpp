@@ -25,7 +25,7 @@ constexpr double diagrams = 10;
 /// With which the first plan begins.
 constexpr double usual_packing_fraction = 0.6;
 /// Scales that a reader should hear of.
-constexpr double worth_telling = 2e-3;
+constexpr double change_worth_telling = 2e-3;
 
 bool box_follows(const Scene& scene) {
   const auto* box = std::get_if<PeriodicBox>(&scene.container);
@@ -125,7 +125,7 @@ Plan plan_of_cells(const Scene& stated) {
     phi = follows ? plan.expected_packing_fraction : surely_reached(plan);
     plan = made_plan(scene_of_radii(scene, radii_in(volumes, phi)));
   }
-  if (std::abs(scale - 1) > worth_telling)
+  if (std::abs(scale - 1) > change_worth_telling)
     plan.hints.push_back(
         fmt::format("{} cells of these sizes have {:.4g} times the volume of the box: the "
                     "volumes are all {:.4g} times as large",

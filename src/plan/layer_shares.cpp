@@ -18,7 +18,7 @@
 namespace bernal {
 namespace {
 
-constexpr int intervals = 400, points_of_lattice = 4096;
+constexpr int interval_count = 400, points_of_lattice = 4096;
 
 /// Spheres of a size, and what they carry of the volume of all.
 struct SizeShare {
@@ -39,8 +39,9 @@ std::vector<SizeShare> sizes_of(const SizeDistribution& radii) {
     if (std::abs(sum - 1) < 1e-9) return exact;
   }
   std::vector<double> limits = {0};
-  for (int k = 1; k < intervals; ++k) limits.push_back(radii.quantile(static_cast<double>(k) / intervals));
-  for (double above = 0.5 / intervals; above > 1e-15; above *= 0.7)
+  for (int k = 1; k < interval_count; ++k)
+    limits.push_back(radii.quantile(static_cast<double>(k) / interval_count));
+  for (double above = 0.5 / interval_count; above > 1e-15; above *= 0.7)
     limits.push_back(radii.quantile(1 - above));
   std::vector<SizeShare> some;
   for (std::size_t k = 0; k < limits.size(); ++k) {

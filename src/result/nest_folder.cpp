@@ -24,12 +24,12 @@ namespace bernal {
 namespace {
 
 /// Spheres are counted from 0, as everywhere, packings from 1, as their folders are.
-constexpr std::string_view header = "sphere,template,qw,qx,qy,qz";
-constexpr std::size_t columns = 6;
+constexpr std::string_view header_of_table = "sphere,template,qw,qx,qy,qz";
+constexpr std::size_t columns_of_table = 6;
 
 void write_table(const fs::path& file, const PackingsInside& inside) {
   OutputFile out(file);
-  out.append(fmt::format("{}\n", header));
+  out.append(fmt::format("{}\n", header_of_table));
   for (std::size_t k = 0; k < inside.spheres.size(); ++k) {
     const auto& [w, x, y, z] = inside.rotations[k];
     out.append(fmt::format("{},{},{},{},{},{}\n", inside.spheres[k], inside.which[k] + 1, w, x, y, z));
@@ -45,17 +45,18 @@ std::uint32_t whole(const CsvLines& lines, double value, double least, std::stri
 }
 
 void read_table(const fs::path& file, PackingsInside& inside) {
-  constexpr std::array<std::string_view, columns> names = {"sphere", "template", "qw", "qx", "qy", "qz"};
+  constexpr std::array<std::string_view, columns_of_table> names = {"sphere", "template", "qw",
+                                                                    "qx",     "qy",       "qz"};
   CsvLines lines(file);
-  if (!lines.next() || lines.line() != header)
-    lines.fail(fmt::format("expected the header {}, found {}", header, quoted(lines.line())));
+  if (!lines.next() || lines.line() != header_of_table)
+    lines.fail(fmt::format("expected the header {}, found {}", header_of_table, quoted(lines.line())));
   while (lines.next()) {
     std::string_view rest = lines.line();
-    std::array<double, columns> values{};
-    for (std::size_t k = 0; k < columns; ++k) {
+    std::array<double, columns_of_table> values{};
+    for (std::size_t k = 0; k < columns_of_table; ++k) {
       const std::size_t comma = rest.find(',');
-      if ((comma == std::string_view::npos) != (k + 1 == columns))
-        lines.fail(fmt::format("expected {} fields: {}", columns, header));
+      if ((comma == std::string_view::npos) != (k + 1 == columns_of_table))
+        lines.fail(fmt::format("expected {} fields: {}", columns_of_table, header_of_table));
       values[k] = lines.read_number(rest.substr(0, comma), names[k]);
       if (comma != std::string_view::npos) rest.remove_prefix(comma + 1);
     }

@@ -19,7 +19,7 @@ constexpr double crowded = 0.06, wear_of_crowd = 3;
 /// Sweeps from one look at the overlaps to the next.
 constexpr int sweeps_a_look = 25;
 /// Stirring helps as long as the mean squeeze falls below this share of its least value.
-constexpr double progress = 0.9;
+constexpr double enough_progress = 0.9;
 /// From this mean squeeze on there are far too many spheres, and stirring is of no use.
 constexpr double hopeless = 0.02;
 /// The share of the spheres that is put into holes at a time. In a container it is `relocated_by_squeeze`
@@ -136,7 +136,7 @@ StageEnd Crowd<Ground>::relax(const Stirring& how, const Monitor& monitor, Rando
     const StageEnd end = settle(settling, stop, how.milestone, how.most_sweeps);
     if (end == StageEnd::cancelled || (end == StageEnd::converged && how.is_free())) return end;
     if (how.is_over()) return StageEnd::hit_limit;
-    if (mean_squeeze_ < progress * least_squeeze) {
+    if (mean_squeeze_ < enough_progress * least_squeeze) {
       least_squeeze = mean_squeeze_;
       failures = 0;
     } else if (mean_squeeze_ > hopeless || !ground_.narrow_margin()) {

@@ -29,7 +29,7 @@ struct SweepPolicy {
   float omega_at(const Pace& pace) const { return omega > 0 ? omega : pace.omega; }
 };
 /// For spheres that are to be as dense as they can.
-inline constexpr SweepPolicy thorough = {0, 2, 0.85, std::numeric_limits<double>::infinity()};
+inline constexpr SweepPolicy patient = {0, 2, 0.85, std::numeric_limits<double>::infinity()};
 /// Spheres that have room need not come to rest with all of their contacts: they are agitated all the time,
 /// and stirred as soon as the mean squeeze does not fall fast. With the wide margin N = 100,000 in two CAD
 /// parts take 900 and 1,400 sweeps in place of 1,600 and 2,400. Where there is none, 1 % fewer spheres fit.
@@ -47,7 +47,7 @@ class ContainerGround {
   /// are stuck.
   static constexpr bool crowds_wear_lists = true;
   /// Brisk where the margin is wide.
-  const SweepPolicy& policy() const { return first_margin_ > 0 ? brisk : thorough; }
+  const SweepPolicy& policy() const { return first_margin_ > 0 ? brisk : patient; }
   /// The margin while there is room for it. With 1e-3 there are a tenth fewer contacts at a gap of 0.002.
   static constexpr double wide_margin = 5e-4;
 
@@ -112,7 +112,7 @@ class BoxGround {
   static constexpr double burst_swelling = D <= 4 ? 1.02 : 1.04;
   static constexpr std::size_t always_stay = 1;
   static constexpr bool crowds_wear_lists = false;
-  static constexpr const SweepPolicy& policy() { return thorough; }
+  static constexpr const SweepPolicy& policy() { return patient; }
 
   static int axes() { return D; }
 

@@ -7,7 +7,6 @@
 
 #include "bernal/core/error.hpp"
 #include "solids/near_faces.hpp"
-#include "voxels/ball_in_cells.hpp"
 
 namespace bernal {
 namespace {
@@ -29,101 +28,105 @@ double depth_in(const Domain& domain, const Vector<3>& p) {
   } else if (const auto* sphere = std::get_if<Sphere>(&domain)) {
     least = sphere->radius - (p - sphere->center).norm();
   } else {
-    refuse_cut(
-        fmt::format("‹cut› takes a part of boxes, cylinders and spheres, not of a {}", name_of(domain)));
+    refuse_cut(fmt::format("‹cut› takes parts of packings in boxes, cylinders and spheres, not in a {}",
+                           name_of(domain)));
   }
   return least;
 }
 
-void require_within(const Domain& domain, const Bounds<3>& box) {
-  if (!((box.upper - box.lower).minCoeff() > 0)) refuse_cut("the box of ‹cut› holds nothing");
-  const double rounding = 1e-9 * (box.upper - box.lower).norm();
-  for (int corner = 0; corner < 8; ++corner) {
-    Vector<3> p;
-    for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? box.upper[k] : box.lower[k];
-    if (depth_in(domain, p) < -rounding)
-      refuse_cut(fmt::format("the box of ‹cut› reaches out of the container at ({:.6g}, {:.6g}, {:.6g})",
+void require_within(const Domain& domain, const ConvexPart& part) {
+  const double rounding = 1e-6 * part.bounds().diagonal();  // more than that of coordinates in files
+  for (const ConvexPart::Corner& corner : part.corners)
+    if (const Vector<3>& p = corner.point; depth_in(domain, p) < -rounding)
+      refuse_cut(fmt::format("the part of ‹cut› reaches out of the container at ({:.6g}, {:.6g}, {:.6g})",
                              p[0], p[1], p[2]));
-  }
 }
 
-double distance_to(const Bounds<3>& box, const Vector<3>& p) {
-  return (p - p.cwiseMax(box.lower).cwiseMin(box.upper)).norm();
+/// A part that repeats a period more often than anybody means.
+void require_fewer_than_too_many(const Solids& whole, const ConvexPart& part) {
+  constexpr double most = 1e7;
+  const double count =
+      static_cast<double>(whole.spheres.size()) * volume_of(part.domain()) / volume_of(whole.domain);
+  if (count > most)
+    refuse_cut(
+        fmt::format("the part of ‹cut› is {:.6g} wide and would hold about {:.0g} spheres, images of "
+                    "the {} in the period; is its unit right?",
+                    part.bounds().size().maxCoeff(), count, whole.spheres.size()));
+}
+
+/// Calls visit(centre) for the images of a ball, in a domain that may repeat itself, that reach into a part.
+template <class Visit>
+void for_each_image_in(const ConvexPart& part, const Bounds<3>& bounds, const Boundary<3>& boundary,
+                       const Vector<3>& center, double r, const Visit& visit) {
+  std::array<int, 3> first{}, last{};
+  for (int k = 0; k < 3; ++k) {
+    if (!boundary.repeats(k)) continue;
+    const auto at = static_cast<std::size_t>(k);
+    first[at] = static_cast<int>(std::ceil((bounds.lower[k] - r - center[k]) / boundary.edges[k]));
+    last[at] = static_cast<int>(std::floor((bounds.upper[k] + r - center[k]) / boundary.edges[k]));
+  }
+  for (int x = first[0]; x <= last[0]; ++x)
+    for (int y = first[1]; y <= last[1]; ++y)
+      for (int z = first[2]; z <= last[2]; ++z) {
+        const Vector<3> image = center + Vector<3>(x, y, z).cwiseProduct(boundary.edges);
+        if (part.height(image) < r && part.distance(image) < r) visit(image);
+      }
 }
 
 }  // namespace
 
-std::optional<Piece> piece_in_box(const Vector<3>& center, double radius, const Bounds<3>& box) {
-  if (!(distance_to(box, center) < radius)) return {};
-  Piece piece{.center = center, .radius = radius};
-  for (int k = 0; k < 3; ++k) {
-    if (center[k] - radius < box.lower[k])
-      piece.cuts.push_back({{-Vector<3>::Unit(k), -box.lower[k]}, 2 * k});
-    if (center[k] + radius > box.upper[k])
-      piece.cuts.push_back({{Vector<3>::Unit(k), box.upper[k]}, 2 * k + 1});
-  }
-  return piece;
-}
-
-double volume_in_box(const Vector<3>& center, double radius, const Bounds<3>& box) {
-  BallInCells ball;
+double volume_in(const ConvexPart& part, const Spheres<dynamic>& spheres, const Domain& domain) {
+  const Boundary<3> boundary = boundary_of<3>(domain);
+  const Bounds<3> bounds = part.bounds();
   double volume = 0;
-  for (int k = 0; k < 3; ++k)
-    ball.planes[static_cast<std::size_t>(k)] = {(box.lower[k] - center[k]) / radius,
-                                                (box.upper[k] - center[k]) / radius};
-  const double cube = radius * radius * radius;
-  ball.add(cube, (box.upper - box.lower).prod(), &volume, 1, 1);
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for_each_image_in(part, bounds, boundary, spheres.center(i), spheres.r[i], [&](const Vector<3>& image) {
+      if (const auto piece = piece_in(part, image, spheres.r[i])) volume += volume_of(*piece);
+    });
   return volume;
 }
 
-CutOut cut_out(const Solids& whole, const Bounds<3>& given, double gap) {
-  require_within(whole.domain, given);
-  // The upper faces where the corner and the size of the box say that they are.
-  const Box box{.corner = given.lower, .size = given.upper - given.lower};
-  const Bounds<3> bounds{.lower = box.corner, .upper = box.corner + box.size};
+CutOut cut_out(const Solids& whole, const ConvexPart& part, double gap) {
+  require_within(whole.domain, part);
+  require_fewer_than_too_many(whole, part);
+  const Bounds<3> bounds = part.bounds();
   if (joins(whole.contacts.treatment) || whole.contacts.treatment == ContactTreatment::cap)
     refuse_cut("‹cut› takes contact gap or shrink: bridges and caps are not cut");
   CutOut made{.solids = {.spheres = Spheres<dynamic>(3),
-                         .domain = box,
+                         .domain = part.domain(),
                          .pieces = {},
                          .bridges = {},
                          .contacts = whole.contacts},
               .of_packing = {}};
   Solids& solids = made.solids;
   solids.bridge_radius = whole.bridge_radius;
-  solids.is_cut = true;
+  solids.part = part;
   if (!whole.shells.first.empty()) solids.shells.first.push_back(0);
   const Boundary<3> boundary = boundary_of<3>(whole.domain);
+  double filled = 0;
   for (std::uint32_t i = 0; i < whole.spheres.size(); ++i) {
     const Vector<3> center(whole.spheres.center(i));
     const double r = whole.spheres.r[i];
-    std::array<int, 3> first{}, last{};
-    for (int k = 0; k < 3; ++k) {
-      if (!boundary.repeats(k)) continue;
-      const auto at = static_cast<std::size_t>(k);
-      first[at] = static_cast<int>(std::ceil((bounds.lower[k] - r - center[k]) / boundary.edges[k]));
-      last[at] = static_cast<int>(std::floor((bounds.upper[k] + r - center[k]) / boundary.edges[k]));
-    }
-    for (int x = first[0]; x <= last[0]; ++x)
-      for (int y = first[1]; y <= last[1]; ++y)
-        for (int z = first[2]; z <= last[2]; ++z) {
-          const Vector<3> image = center + Vector<3>(x, y, z).cwiseProduct(boundary.edges);
-          if (!(distance_to(bounds, image) < r)) continue;
-          double radius = r;
-          const std::span<const double> within = whole.shells.of(i);
-          std::vector<double> layers(within.begin(), within.end());
-          solids.cleared += NearFaces(bounds, image).clear(radius, layers, gap);
-          std::optional<Piece> piece = piece_in_box(image, radius, bounds);
-          if (!piece) continue;
-          piece->sphere = static_cast<std::uint32_t>(solids.spheres.size());
-          solids.pieces.push_back(std::move(*piece));
-          solids.spheres.push_back(image, radius);
-          made.of_packing.push_back(i);
-          if (solids.shells.first.empty()) continue;
-          solids.shells.radius.insert(solids.shells.radius.end(), layers.begin(), layers.end());
-          solids.shells.first.push_back(solids.shells.radius.size());
-        }
+    for_each_image_in(part, bounds, boundary, center, r, [&](const Vector<3>& image) {
+      double radius = r;
+      const std::span<const double> within = whole.shells.of(i);
+      std::vector<double> layers(within.begin(), within.end());
+      if (part.height(image) > -2 * r) solids.cleared += NearFaces(part, image).clear(radius, layers, gap);
+      std::optional<Piece> piece = piece_in(part, image, radius);
+      if (!piece) return;
+      filled += volume_of(*piece);
+      piece->sphere = static_cast<std::uint32_t>(solids.spheres.size());
+      solids.pieces.push_back(std::move(*piece));
+      solids.spheres.push_back(image, radius);
+      made.of_packing.push_back(i);
+      if (solids.shells.first.empty()) return;
+      solids.shells.radius.insert(solids.shells.radius.end(), layers.begin(), layers.end());
+      solids.shells.first.push_back(solids.shells.radius.size());
+    });
   }
+  constexpr double rounding = 1e-9;
+  if (!(filled < (1 - rounding) * volume_of(solids.domain)))
+    refuse_cut("the part of ‹cut› lies within one sphere: there is nothing between spheres to mesh");
   return made;
 }
 

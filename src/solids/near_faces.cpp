@@ -1,11 +1,32 @@
 #include "solids/near_faces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <ranges>
 
 namespace bernal {
+namespace {
+
+/// The lowest cap and the least distance at an edge, given the outward normals of its faces. Where the edge
+/// pierces the sphere, the circles in the faces cross at 22 degrees or half the angle of the edge: where the
+/// centre lies half way between the faces, and the edge at the distance s from it, cos a = (1 - 2 c² + s² c²)
+/// / (1 - s² c²) with the sine c of half the edge's angle. Where the sphere ends before the edge, its two
+/// circles are as far from each other as at a right angle.
+std::array<double, 2> limits_at_edge(const Vector<3>& normal, const Vector<3>& other) {
+  constexpr double widest = 22 * std::numbers::pi / 180, farthest = 5;
+  const double angle = std::acos(std::clamp(-normal.dot(other), -1.0, 1.0));
+  const double c2 = 0.5 * (1 - std::cos(angle)), cosine = std::cos(std::min(widest, 0.5 * angle));
+  const double s2 = (2 * c2 - 1 + cosine) / (c2 * (1 + cosine));
+  constexpr double rounding = 1e-9;  // a right angle is none to rounding
+  const double farther = 2 * c2 > 1 - rounding ? 1 : std::min(farthest, 1 / std::sqrt(2 * c2));
+  return {std::max(NearFaces::least_cap, 1 - std::sqrt(std::max(0.0, s2))),
+          farther * NearFaces::least_distance};
+}
+
+}  // namespace
 
 NearFaces::NearFaces(const Bounds<3>& box, const Vector<3>& p) {
   // Of each axis: a face at its lower end, at its upper end, or none.
@@ -20,19 +41,39 @@ NearFaces::NearFaces(const Bounds<3>& box, const Vector<3>& p) {
         square += (p[k] - at) * (p[k] - at);
       }
     }
-    if (is_beside && std::isfinite(square)) distances_.push_back(std::sqrt(square));
+    if (is_beside && std::isfinite(square)) features_.push_back({std::sqrt(square)});
   }
 }
 
+NearFaces::NearFaces(const ConvexPart& part, const Vector<3>& p) {
+  for (const ConvexPart::Face& face : part.faces) {
+    const double above = face.keeps.normal.dot(p) - face.keeps.offset;
+    if (face.holds(p - above * face.keeps.normal, part)) features_.push_back({std::abs(above)});
+  }
+  const auto add = [&](const Vector<3>& d, const std::array<double, 2>& limits) {
+    features_.push_back({std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), limits[0], limits[1]});
+  };
+  for (const ConvexPart::Edge& edge : part.edges) {
+    const Vector<3>&a = part.corners[edge.corners[0]].point, &b = part.corners[edge.corners[1]].point;
+    const double along = (p - a).dot(edge.along);
+    if (along >= 0 && along <= (b - a).dot(edge.along))
+      add(p - a - along * edge.along,
+          limits_at_edge(part.faces[edge.faces[0]].keeps.normal, part.faces[edge.faces[1]].keeps.normal));
+  }
+  for (const ConvexPart::Corner& corner : part.corners) add(p - corner.point, {least_cap, least_distance});
+}
+
 double NearFaces::clear_radius(double radius, double gap) const {
-  const double lowest = std::max(gap, least_cap), nearest = std::max(gap, least_distance);
   for (bool changed = true; changed;) {
     changed = false;
-    for (const double distance : distances_)
-      if (distance - radius < nearest * radius && radius - distance < lowest * radius) {
-        radius = std::nextafter(distance / (1 + nearest), 0.0);
-        changed = true;
-      }
+    for (const Feature& feature : features_) {
+      const double nearest = std::max(gap, feature.nearest), lowest = std::max(gap, feature.lowest);
+      if (!(feature.distance - radius < nearest * radius && radius - feature.distance < lowest * radius))
+        continue;
+      // Where rounding says that it is still too near it goes on by roundoffs.
+      radius = std::nextafter(std::min(radius, feature.distance / (1 + nearest)), 0.0);
+      changed = true;
+    }
   }
   return radius;
 }

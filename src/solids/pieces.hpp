@@ -18,7 +18,7 @@ struct HalfSpace {
 struct Cut {
   HalfSpace keeps;
   /// The face of the period: 0 and 1 at the lower and upper end of the first axis, up to 5 for the third; or
-  /// `contact`.
+  /// that of a convex part; or `contact`.
   int face = contact;
   static constexpr int contact = -1;
 };

@@ -1,10 +1,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "solids/contacts.hpp"
+#include "solids/convex_part.hpp"
 #include "solids/pieces.hpp"
 
 namespace bernal {
@@ -51,9 +53,11 @@ struct Solids {
   double bridge_radius = 0;  ///< as asked for, over the radius of the smaller sphere
   double bridge_angle = 0;   ///< or so, as SolidsOptions
   InnerSpheres shells = {};  ///< which shrink as their spheres do
-  /// Whether the domain is a box cut out of a packing: without periods, and its faces cut spheres.
-  bool is_cut = false;
+  /// Of a part cut out of a packing: the domain, without periods, whose faces cut spheres.
+  std::optional<ConvexPart> part = {};
   std::size_t cleared = 0;  ///< spheres that are smaller for being nearly touched by an end or a cut
+
+  bool is_cut() const { return part.has_value(); }
 };
 
 struct SolidsOptions {

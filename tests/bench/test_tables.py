@@ -90,8 +90,8 @@ class Effects(Table):
 
 class Arithmetic(Table):
     def test_filtered_is_exact_and_errors_are_below_their_bounds(self):
-        lines = self.made("arithmetic", "--decisions", 6000, "--largest", 100, "--program", ARITHMETIC,
-                          "--command", COMMAND)  # fmt: skip
+        lines = self.made("arithmetic", "--decisions", 6000, "--largest", 100, "--diameter", 2,
+                          "--program", ARITHMETIC, "--command", COMMAND)  # fmt: skip
         self.assertEqual(len({line["decision"] for line in lines}), 6)
         self.assertEqual({line["container"] for line in lines}, {"", "box", "cylinder", "sphere", "mesh 1e2", "cone", "tube",
                                                                 "hopper"})

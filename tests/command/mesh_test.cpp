@@ -116,10 +116,6 @@ TEST(MeshCommand, LayersAreRegionsOfTheStatedVolumes) {
   double stated = 0;
   for (const auto& group : part["groups"]) stated += group["stated_volume"].get<double>();
   EXPECT_NEAR(stated, 18, 1e-9);
-  for (const char* box : {"x = 1..4", "x = 1..4, x = 1..4, z = 2..4", "x + y = 1..4, y = 0..3, z = 2..4"})
-    expect_refused_in_one_line(bernal({"mesh", folder / "out", "--to", "gmsh", "-o", folder / "a.msh",
-                                       "--contact", "gap", "--cut", box}),
-                               {"cut"});
 }
 
 TEST(MeshCommand, PrismsStandInTheFluid) {
@@ -156,35 +152,6 @@ TEST(MeshCommand, PrismsStandInTheFluid) {
   expect_refused_in_one_line(mesh("abaqus", {"--prisms", "3"}), {"prisms", "abaqus"});
   expect_refused_in_one_line(mesh("gmsh", {"--prisms", "3", "--regions", "all"}), {"prisms", "fluid"});
   expect_refused_in_one_line(mesh("gmsh", {"--prisms", "3", "--order", "2"}), {"prisms", "order"});
-}
-
-TEST(MeshCommand, CadPartsKeepTheirVolumeInTheMesh) {
-  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
-  Folder folder;
-  const std::string scene = fmt::format(R"(unit = "m"
-[container]
-kind = "mesh"
-file = "{}/meshes/hopper.stl"
-unit = "m"
-[spheres]
-count = 8
-diameter = 0.24
-)",
-                                        BERNAL_DATA);
-  const std::string out = folder / "out";
-  const Ended packed = bernal({"pack", folder.write("scene.toml", scene).string(), "-o", out});
-  ASSERT_EQ(packed.status, 0) << packed.err;
-  for (const char* contact : {"bridge", "gap"}) {
-    const Ended ended = bernal({"mesh", out, "--to", "gmsh", "-o", folder / "bed.msh", "--regions", "all",
-                                "--contact", contact, "--json"});
-    ASSERT_EQ(ended.status, 0) << ended.err;
-    const auto report = nlohmann::json::parse(ended.out);
-    EXPECT_GE(report["least_sicn"], 0.1);
-    double volume = 0;
-    for (const auto& group : report["groups"]) volume += group["volume"].get<double>();
-    EXPECT_NEAR(volume, 0.8125, 1e-7);  // corners of the file are in single precision
-    EXPECT_NEAR(report["porosity"].get<double>(), report["meshed_porosity"].get<double>(), 0.01);
-  }
 }
 
 TEST(MeshCommand, FilletsHoldTheStatedPorosity) {

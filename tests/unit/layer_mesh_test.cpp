@@ -202,11 +202,13 @@ TEST(NearFaces, EndsOfPeriodsLeaveNoLowCaps) {
 }
 
 TEST(CutOut, BoxesHoldTheVolumesOfPartsOfBalls) {
-  const Bounds<3> box{.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(2, 3, 4)};
-  EXPECT_NEAR(volume_in_box(Vector<3>(1, 1, 2), 0.5, box), ball(0.5), 1e-13);
-  EXPECT_NEAR(volume_in_box(Vector<3>(0, 1, 2), 0.5, box), ball(0.5) / 2, 1e-13);
-  EXPECT_NEAR(volume_in_box(Vector<3>(0, 3, 2), 0.5, box), ball(0.5) / 4, 1e-13);
-  EXPECT_NEAR(volume_in_box(Vector<3>(-0.3, 1, 2), 0.5, box), cap_volume(0.5, 0.2), 1e-13);
+  const ConvexPart box = part_of_box({.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(2, 3, 4)});
+  const auto volume_in_box = [&](const Vector<3>& center) { return volume_of(*piece_in(box, center, 0.5)); };
+  EXPECT_NEAR(volume_in_box(Vector<3>(1, 1, 2)), ball(0.5), 1e-13);
+  EXPECT_NEAR(volume_in_box(Vector<3>(0, 1, 2)), ball(0.5) / 2, 1e-13);
+  EXPECT_NEAR(volume_in_box(Vector<3>(0, 3, 2)), ball(0.5) / 4, 1e-13);
+  EXPECT_NEAR(volume_in_box(Vector<3>(-0.3, 1, 2)), cap_volume(0.5, 0.2), 1e-13);
+  EXPECT_FALSE(piece_in(box, Vector<3>(-0.4, -0.4, 2), 0.5));
 }
 
 TEST(CutOut, FacesOfABoxCutSpheresAndLayers) {
@@ -216,7 +218,7 @@ TEST(CutOut, FacesOfABoxCutSpheresAndLayers) {
   const Solids whole = solids_of(
       spheres, period, {.contact = ContactTreatment::gap, .gap = 0.01, .shells = shells_in(spheres, {0.9})});
   // More than a period along one axis.
-  const CutOut part = cut_out(whole, {.lower = Vector<3>(1, 1, 1), .upper = Vector<3>(7, 4, 4.5)}, 0.01);
+  const CutOut part = cut_out(whole, part_of_box({Vector<3>(1, 1, 1), Vector<3>(7, 4, 4.5)}), 0.01);
   ASSERT_EQ(part.of_packing.size(), part.solids.spheres.size());
   EXPECT_GT(part.solids.spheres.size(), 8u);
   for (const bool with_solids : {false, true}) {
@@ -244,8 +246,8 @@ TEST(CutOut, RefusesBoxesBeyondWallsAndBridges) {
   Spheres<dynamic> spheres(3);
   spheres.push_back(Vector<3>(1, 1, 1), 1);
   const Domain box = Box{.size = Vector<3>(4, 4, 4)};
-  const Bounds<3> inside{.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(1.2, 2, 4)};
-  const Bounds<3> beyond{.lower = Vector<3>(0, 0, 0), .upper = Vector<3>(1.2, 2, 5)};
+  const ConvexPart inside = part_of_box({Vector<3>(0, 0, 0), Vector<3>(1.2, 2, 4)});
+  const ConvexPart beyond = part_of_box({Vector<3>(0, 0, 0), Vector<3>(1.2, 2, 5)});
   const auto solids = [&](ContactTreatment contact) {
     return solids_of(spheres, box, {.contact = contact, .gap = 0.01});
   };

@@ -72,9 +72,13 @@ void expect_least(const Spheres<dynamic>& spheres, const Domain& domain, double 
   const double rounding = 1e-13 * size / *std::ranges::min_element(spheres.r);
   const Certificate c = certify(spheres, domain);
   ASSERT_EQ(c.worst_pair.has_value(), pair < infinity);
-  if (pair < infinity) EXPECT_NEAR(-c.max_overlap, pair, 1e-14 * (1 + pair) + rounding);
+  if (pair < infinity) {
+    EXPECT_NEAR(-c.max_overlap, pair, 1e-14 * (1 + pair) + rounding);
+  }
   ASSERT_EQ(c.worst_wall.has_value(), wall < infinity);
-  if (wall < infinity) EXPECT_NEAR(c.min_wall_gap, wall, 1e-13 * (1 + std::abs(wall)) + rounding);
+  if (wall < infinity) {
+    EXPECT_NEAR(c.min_wall_gap, wall, 1e-13 * (1 + std::abs(wall)) + rounding);
+  }
   for (const Certificate& other :
        {certify(spheres, domain, {.arithmetic = Arithmetic::exact}), certify(spheres, domain, {.threads = 2}),
         certify(spheres, domain, {.at_once = spheres.size() / 5 + 1})}) {

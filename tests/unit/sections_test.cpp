@@ -68,7 +68,9 @@ TEST_P(FillInSections, KeepsTheSurfaceAndTheVolumes) {
   const auto [is_periodic, solids] = GetParam();
   const ConformingSurface surface = is_periodic ? surface_in(in_periodic_box, ContactTreatment::gap, solids)
                                                 : surface_in(in_cylinder, ContactTreatment::bridge, solids);
-  if (!is_periodic) ASSERT_FALSE(surface.necks.empty());
+  if (!is_periodic) {
+    ASSERT_FALSE(surface.necks.empty());
+  }
   const TetrahedraOptions options{.most_triangles = surface.triangles.size() / 4};
   ASSERT_EQ(section_cuts(surface, options.most_triangles).count(), 5U);
   FillReport report, whole_report;
@@ -87,9 +89,9 @@ TEST_P(FillInSections, KeepsTheSurfaceAndTheVolumes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Beds, FillInSections, ::testing::Combine(::testing::Bool(), ::testing::Bool()),
-                         [](const auto& info) {
-                           return std::string(std::get<0>(info.param) ? "PeriodicBox" : "Cylinder") +
-                                  (std::get<1>(info.param) ? "WithSolids" : "FluidAlone");
+                         [](const auto& of) {
+                           return std::string(std::get<0>(of.param) ? "PeriodicBox" : "Cylinder") +
+                                  (std::get<1>(of.param) ? "WithSolids" : "FluidAlone");
                          });
 
 }  // namespace sections_test

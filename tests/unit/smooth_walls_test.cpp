@@ -45,8 +45,9 @@ TEST(SmoothWalls, FineFacetsAreJoinedAndWideOnesAreNot) {
   EXPECT_NEAR(length, 2 * rim + 20 * static_cast<double>(around), 1e-9);
   // An edge of this length rises above its arc by the tolerance.
   for (std::size_t p = 0; p < flat.parts.size(); ++p)
-    if (std::abs(flat.parts[p].outward[2]) < 0.5)
+    if (std::abs(flat.parts[p].outward[2]) < 0.5) {
       EXPECT_NEAR(walls.longest[p], std::sqrt(8 * 0.01 * 10), 0.01);
+    }
 }
 
 TEST(SmoothWalls, PartsThatAreKeptApartStayPlanar) {

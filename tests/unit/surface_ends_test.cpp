@@ -145,6 +145,55 @@ TEST(ConformingSurface, ThinSidesOfBridgesAreMeshed) {
     }
 }
 
+/// The same where the boundary goes all the way around on both sides: edges of a circle are chords of it.
+TEST(ConformingSurface, ThinSidesOfBridgesAreMeshedAllAround) {
+  Spheres<dynamic> one(3);
+  one.push_back(Vector<3>(1, 1, 1), 0.5);
+  const Solids solids = solids_in(one, periodic_box(Vector<3>(2, 2, 2)), ContactTreatment::bridge);
+  const SurfaceMeshOptions options;
+  for (const double first : {0.0, 0.1, 0.35})  // by which the upper points are turned
+    for (const double height : {0.02, 0.004, 0.0008}) {
+      SurfaceDraft draft(solids, options);
+      DraftNeck neck;
+      static_cast<NeckShape&>(neck) = {.radius = 0.1, .end = 2 * height, .rims = {0.1, 0.1}};
+      neck.is_cut = true;
+      neck.edge = 0.12;
+      double area = 0;
+      for (const bool is_upper : {false, true}) {
+        const int count = is_upper ? 8 : 9;
+        NeckTrace boundary{.is_closed = true};
+        double sum = 0;
+        for (int k = 0; k < count; ++k) {
+          const double angle = 2 * pi * k / count + (is_upper ? first : 0);
+          const double along = is_upper ? height * (1 + 0.5 * std::cos(angle)) : 0;
+          boundary.ids.push_back(
+              draft.add_vertex(Vector<3>(0.1 * std::cos(angle), 0.1 * std::sin(angle), along), neck.edge));
+          sum += along;
+        }
+        area += 2 * pi * 0.1 * sum / count;
+        neck.traces.push_back(boundary);
+      }
+      draft.necks = {neck};
+      mesh_necks(draft);
+      ASSERT_GE(draft.made.triangles.size(), 17u);
+      double meshed = 0;
+      for (const FaceCorners& t : draft.made.triangles) {
+        std::array<Vector<3>, 3> flat;
+        double before = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vector<3>& p = draft.made.vertices[t[k]];
+          const double angle = std::atan2(p[1], p[0]);
+          before = k == 0 ? angle : before + std::remainder(angle - before, 2 * pi);
+          flat[k] = Vector<3>(0.1 * before, p[2], 0);
+        }
+        const double part = 0.5 * (flat[1] - flat[0]).cross(flat[2] - flat[0])[2];
+        EXPECT_GT(part, 0) << "normals point into the fluid";
+        meshed += part;
+      }
+      EXPECT_NEAR(meshed, area, 1e-9 * area);
+    }
+}
+
 /// What caps have, by their flat faces: of each sphere those of different depth or direction.
 double volume_of_caps(const ConformingSurface& surface, const Solids& solids) {
   const Boundary<3> boundary = boundary_of<3>(solids.domain);

@@ -187,7 +187,7 @@ TEST(Fill, EndsWhenItIsToldTo) {
   NEEDS_TETGEN();
   const TwoSpheres two(false);
   FillReport report;
-  const Monitor monitor{.cancelled = [] { return true; }};
+  const Monitor monitor{.on_progress = {}, .cancelled = [] { return true; }};
   EXPECT_THROW(fill(two.surface, {}, report, monitor), Cancelled);
 }
 
@@ -270,9 +270,10 @@ TEST(PolyMesh, FacesAreInUpperTriangularOrderAndEndsAreImages) {
   std::set<std::array<std::uint32_t, 2>> pairs;
   for (std::size_t f = 0; f < inner; ++f) {
     EXPECT_LT(poly.owner[f], poly.neighbour[f]);
-    if (f > 0)
+    if (f > 0) {
       EXPECT_LT(std::pair(poly.owner[f - 1], poly.neighbour[f - 1]),
                 std::pair(poly.owner[f], poly.neighbour[f]));
+    }
     pairs.insert({poly.owner[f], poly.neighbour[f]});
   }
   EXPECT_EQ(pairs.size(), inner);

@@ -82,7 +82,9 @@ TEST(ZoneLayers, SharesOfClassesMayBeOfTheLargestSpheres) {
   const SphereLayers layers = layers_of(packing);
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
     ASSERT_EQ(layers.of(i).size(), packing.classes[i] == 1 ? 2u : 0u);
-    if (packing.classes[i] == 1) EXPECT_NEAR(layers.of(i)[0] / packing.spheres.r[i], std::cbrt(0.8), 1e-14);
+    if (packing.classes[i] == 1) {
+      EXPECT_NEAR(layers.of(i)[0] / packing.spheres.r[i], std::cbrt(0.8), 1e-14);
+    }
   }
   EXPECT_GT(packing.scene.scale, 1);
   EXPECT_THROW(scene_of("thickness = 0.2"), Error);

@@ -41,12 +41,16 @@ struct MeshFileOptions {
   double gap_edge = 4;         ///< longest edges where surfaces are near each other, in widths of the gap
   double layer_edge = 6;       ///< longest edges on spheres with thin layers, in thicknesses of these
   std::string unit = {};       ///< of the lengths in the files; the scene's if empty
-  std::string cut = {};        ///< the box that is meshed: "x = 1..4, y = 1..4, z = 0..5"; all if empty
-  bool solids = false;         ///< whether spheres and bridges are meshed too, or the fluid alone
-  int prisms = 0;              ///< layers of prisms in the fluid, on spheres and walls where there is room
-  double prism_height = 0.1;   ///< of all layers together, on walls in mean radii
-  double prism_growth = 1.2;   ///< height of a layer over that of the one nearer to the surface
-  int order = 1;               ///< 2: with middles of edges, on the true spheres
+  /// The convex part that is meshed: "x = 1..4, y = 1..4, z = 0..5", other planes, or a file of any format
+  /// of a mesh; all if empty.
+  std::string cut = {};
+  std::string patches = {};   ///< flat walls with names: "inlet: z = 0, outlet: z = 40"; none if empty
+  bool solids = false;        ///< whether spheres and bridges are meshed too, or the fluid alone
+  bool hold_volumes = false;  ///< whether facets of spheres hold their volumes, or corners lie on them
+  int prisms = 0;             ///< layers of prisms in the fluid, on spheres and walls where there is room
+  double prism_height = 0.1;  ///< of all layers together, on walls in mean radii
+  double prism_growth = 1.2;  ///< height of a layer over that of the one nearer to the surface
+  int order = 1;              ///< 2: with middles of edges, on the true spheres
 };
 
 /// A member of the options as users give it: `--mesh-size 0.2` to the command, `mesh_size=0.2` in Python.
@@ -80,7 +84,7 @@ struct BedMeshReport {
   std::size_t cut_fillets = 0;     ///< that are cylinders, as ends of periods would cut or nearly touch them
   std::size_t widened_necks = 0;   ///< whose radius is larger, so that ends of periods cut them clearly
   std::size_t deepened_caps = 0;   ///< that are deeper than the gap asks for, for the same reason
-  std::size_t clipped = 0;         ///< spheres that the faces of a box cut out of the packing clip
+  std::size_t clipped = 0;         ///< spheres that the faces of a part cut out of the packing clip
   /// Spheres that are smaller, themselves or their layers, as a face or an end of a period nearly touched
   /// them.
   std::size_t cleared = 0;
@@ -117,7 +121,7 @@ struct BedMeshReport {
 
   double domain_volume = 0;
   double porosity = 0;                         ///< in closed form, contacts as they were treated
-  std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed; nothing for a part
+  std::optional<double> packed_porosity = {};  ///< of the spheres as they are packed
   double meshed_porosity = 0;                  ///< of the mesh
   double contact_area = 0;                     ///< least cross-sections of necks, flat faces of caps
   struct Group {
