@@ -96,8 +96,7 @@ const std::vector<MeshKey>& mesh_keys() {
       {"cut",
        "The part that is meshed, in the scene's unit: \"x = 1..4, y = 1..4, z = 0..5\", other planes that "
        "close a convex part, or a file, part.stl; its faces cut spheres. In boxes, periodic ones too, "
-       "cylinders "
-       "and spheres, with contact gap or shrink",
+       "cylinders and spheres, with contact gap or shrink",
        "PART", &Of::cut},
       {"patches",
        "Flat walls that are patches of their own, by the planes that they lie in, for inlets and outlets: "

@@ -54,10 +54,11 @@ void require_fewer_than_too_many(const Solids& whole, const ConvexPart& part) {
                     part.bounds().size().maxCoeff(), count, whole.spheres.size()));
 }
 
-/// Calls visit(centre) for the images of a ball, in a domain that may repeat itself, that reach into a part.
+/// Calls visit(centre) for the images of a ball, in a domain that may repeat itself, of which periods let
+/// some reach into the bounds; without periods for the ball.
 template <class Visit>
-void for_each_image_in(const ConvexPart& part, const Bounds<3>& bounds, const Boundary<3>& boundary,
-                       const Vector<3>& center, double r, const Visit& visit) {
+void for_each_image_in(const Bounds<3>& bounds, const Boundary<3>& boundary, const Vector<3>& center,
+                       double r, const Visit& visit) {
   std::array<int, 3> first{}, last{};
   for (int k = 0; k < 3; ++k) {
     if (!boundary.repeats(k)) continue;
@@ -67,10 +68,8 @@ void for_each_image_in(const ConvexPart& part, const Bounds<3>& bounds, const Bo
   }
   for (int x = first[0]; x <= last[0]; ++x)
     for (int y = first[1]; y <= last[1]; ++y)
-      for (int z = first[2]; z <= last[2]; ++z) {
-        const Vector<3> image = center + Vector<3>(x, y, z).cwiseProduct(boundary.edges);
-        if (part.height(image) < r && part.distance(image) < r) visit(image);
-      }
+      for (int z = first[2]; z <= last[2]; ++z)
+        visit(Vector<3>(center + Vector<3>(x, y, z).cwiseProduct(boundary.edges)));
 }
 
 }  // namespace
@@ -80,7 +79,7 @@ double volume_in(const ConvexPart& part, const Spheres<dynamic>& spheres, const 
   const Bounds<3> bounds = part.bounds();
   double volume = 0;
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    for_each_image_in(part, bounds, boundary, spheres.center(i), spheres.r[i], [&](const Vector<3>& image) {
+    for_each_image_in(bounds, boundary, spheres.center(i), spheres.r[i], [&](const Vector<3>& image) {
       if (const auto piece = piece_in(part, image, spheres.r[i])) volume += volume_of(*piece);
     });
   return volume;
@@ -107,11 +106,13 @@ CutOut cut_out(const Solids& whole, const ConvexPart& part, double gap) {
   for (std::uint32_t i = 0; i < whole.spheres.size(); ++i) {
     const Vector<3> center(whole.spheres.center(i));
     const double r = whole.spheres.r[i];
-    for_each_image_in(part, bounds, boundary, center, r, [&](const Vector<3>& image) {
+    for_each_image_in(bounds, boundary, center, r, [&](const Vector<3>& image) {
+      const double height = part.height(image);
+      if (!(height < r) || !(part.distance(image) < r)) return;
       double radius = r;
       const std::span<const double> within = whole.shells.of(i);
       std::vector<double> layers(within.begin(), within.end());
-      if (part.height(image) > -2 * r) solids.cleared += NearFaces(part, image).clear(radius, layers, gap);
+      if (height > -2 * r) solids.cleared += NearFaces(part, image).clear(radius, layers, gap);
       std::optional<Piece> piece = piece_in(part, image, radius);
       if (!piece) return;
       filled += volume_of(*piece);

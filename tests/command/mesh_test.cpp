@@ -9,6 +9,7 @@
 
 #include "bernal/mesh_files/mesh_packing.hpp"
 #include "check.hpp"
+#include "mesh_scenes.hpp"
 
 namespace bernal::testing {
 namespace mesh_command_test {
@@ -25,17 +26,6 @@ count = 5
 diameter = 1
 )";
 
-constexpr const char* layered_spheres = R"(unit = "mm"
-[container]
-kind = "periodic"
-[spheres]
-count = 12
-packing_fraction = 0.35
-radius = 1
-gap = 0.1
-layers = [{ name = "core" }, { name = "thin coat", thickness = 0.1 }]
-)";
-
 struct Packed {
   Folder folder;
   Packed() {
@@ -44,8 +34,6 @@ struct Packed {
   }
   std::string out() const { return folder / "out"; }
 };
-
-bool has_tetgen() { return fs::exists("/usr/bin/tetgen"); }
 
 TEST(MeshCommand, WritesEveryFormatAndStatesTheQuality) {
   if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "check.hpp"
+#include "mesh_scenes.hpp"
 
 namespace bernal::testing {
 namespace mesh_walls_test {
@@ -42,7 +43,7 @@ std::pair<std::string, int> patch_in(const std::string& boundary, const std::str
 }
 
 TEST(MeshWalls, InletAndOutletOfACadPartArePatchesWithoutPrisms) {
-  if (!fs::exists("/usr/bin/tetgen")) GTEST_SKIP() << "tetgen is not installed";
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   const PackedHopper result;
   const Ended ended = bernal({"mesh", result.out(), "--to", "openfoam", "-o", result.folder / "case/bed.foam",
                               "--patches", "outlet: z = 0, inlet: z=1.4", "--prisms", "1", "--json"});
@@ -58,7 +59,7 @@ TEST(MeshWalls, InletAndOutletOfACadPartArePatchesWithoutPrisms) {
 }
 
 TEST(MeshWalls, CadPartsKeepTheirVolumeInTheMesh) {
-  if (!fs::exists("/usr/bin/tetgen")) GTEST_SKIP() << "tetgen is not installed";
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   const PackedHopper result;
   for (const char* contact : {"bridge", "gap"}) {
     const Ended ended = bernal({"mesh", result.out(), "--to", "gmsh", "-o", result.folder / "bed.msh",
@@ -94,17 +95,6 @@ TEST(MeshWalls, PlanesWithoutAWallAndTakenNamesAreRefused) {
   expect_refused_in_one_line(mesh(""), {"--patches", "empty"});
 }
 
-constexpr const char* layered_spheres = R"(unit = "mm"
-[container]
-kind = "periodic"
-[spheres]
-count = 12
-packing_fraction = 0.35
-radius = 1
-gap = 0.1
-layers = [{ name = "core" }, { name = "thin coat", thickness = 0.1 }]
-)";
-
 constexpr std::string_view tetrahedron = R"(OFF
 4 4 0
 1 1 1
@@ -118,7 +108,7 @@ constexpr std::string_view tetrahedron = R"(OFF
 )";
 
 TEST(MeshWalls, ConvexPartsAreCutOut) {
-  if (!fs::exists("/usr/bin/tetgen")) GTEST_SKIP() << "tetgen is not installed";
+  if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   const Folder folder;
   const Ended packed = bernal(
       {"pack", folder.write("scene.toml", std::string(layered_spheres)).string(), "-o", folder / "out"});

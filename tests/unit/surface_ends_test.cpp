@@ -100,20 +100,49 @@ TEST(ConformingSurface, EndsOfPeriodsCutBridges) {
     }
 }
 
+/// The area of the side of a bridge of radius 0.1 about the z axis, unrolled, all of whose triangles face
+/// outwards.
+double unrolled_area(const ConformingSurface& surface) {
+  double area = 0;
+  for (const FaceCorners& t : surface.triangles) {
+    std::array<Vector<3>, 3> flat;
+    double before = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector<3>& p = surface.vertices[t[k]];
+      const double angle = std::atan2(p[1], p[0]);
+      before = k == 0 ? angle : before + std::remainder(angle - before, 2 * pi);
+      flat[k] = Vector<3>(0.1 * before, p[2], 0);
+    }
+    const double part = 0.5 * (flat[1] - flat[0]).cross(flat[2] - flat[0])[2];
+    EXPECT_GT(part, 0) << "normals point into the fluid";
+    area += part;
+  }
+  return area;
+}
+
+Solids one_ball() {
+  Spheres<dynamic> one(3);
+  one.push_back(Vector<3>(1, 1, 1), 0.5);
+  return solids_in(one, periodic_box(Vector<3>(2, 2, 2)), ContactTreatment::bridge);
+}
+/// Of radius 0.1, about the z axis.
+DraftNeck cut_bridge(double height) {
+  DraftNeck neck;
+  static_cast<NeckShape&>(neck) = {.radius = 0.1, .end = height, .rims = {0.1, 0.1}};
+  neck.is_cut = true;
+  neck.edge = 0.12;
+  return neck;
+}
+
 /// An end nearly square to a bridge leaves a thin part of its side, along whose boundary chords are as far
 /// from the cylinder as the boundary's two sides are from each other.
 TEST(ConformingSurface, ThinSidesOfBridgesAreMeshed) {
-  Spheres<dynamic> one(3);
-  one.push_back(Vector<3>(1, 1, 1), 0.5);
-  const Solids solids = solids_in(one, periodic_box(Vector<3>(2, 2, 2)), ContactTreatment::bridge);
+  const Solids solids = one_ball();
   const SurfaceMeshOptions options;
   for (const double first : {0.0, 2.0, 5.0})  // where it begins around the axis
     for (const double height : {0.02, 0.004, 0.0004}) {
       SurfaceDraft draft(solids, options);
-      DraftNeck neck;
-      static_cast<NeckShape&>(neck) = {.radius = 0.1, .end = height, .rims = {0.1, 0.1}};
-      neck.is_cut = true;
-      neck.edge = 0.12;
+      DraftNeck neck = cut_bridge(height);
       NeckTrace boundary{.is_closed = true};
       double area = 0, x_before = 0, y_before = 0;  // of the boundary, unrolled
       const auto add = [&](double angle, double along) {
@@ -129,35 +158,18 @@ TEST(ConformingSurface, ThinSidesOfBridgesAreMeshed) {
       draft.necks = {neck};
       mesh_necks(draft);
       ASSERT_GE(draft.made.triangles.size(), 7u);
-      double meshed = 0;
-      for (const FaceCorners& t : draft.made.triangles) {
-        std::array<Vector<3>, 3> flat;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Vector<3>& p = draft.made.vertices[t[k]];
-          const double angle = std::atan2(p[1], p[0]) - first;
-          flat[k] = Vector<3>(0.1 * (angle - 2 * pi * std::floor(angle / (2 * pi) + 1e-6)), p[2], 0);
-        }
-        const double part = 0.5 * (flat[1] - flat[0]).cross(flat[2] - flat[0])[2];
-        EXPECT_GT(part, 0) << "normals point into the fluid";
-        meshed += part;
-      }
-      EXPECT_NEAR(meshed, std::abs(area), 1e-9 * std::abs(area));
+      EXPECT_NEAR(unrolled_area(draft.made), std::abs(area), 1e-9 * std::abs(area));
     }
 }
 
 /// The same where the boundary goes all the way around on both sides: edges of a circle are chords of it.
 TEST(ConformingSurface, ThinSidesOfBridgesAreMeshedAllAround) {
-  Spheres<dynamic> one(3);
-  one.push_back(Vector<3>(1, 1, 1), 0.5);
-  const Solids solids = solids_in(one, periodic_box(Vector<3>(2, 2, 2)), ContactTreatment::bridge);
+  const Solids solids = one_ball();
   const SurfaceMeshOptions options;
   for (const double first : {0.0, 0.1, 0.35})  // by which the upper points are turned
     for (const double height : {0.02, 0.004, 0.0008}) {
       SurfaceDraft draft(solids, options);
-      DraftNeck neck;
-      static_cast<NeckShape&>(neck) = {.radius = 0.1, .end = 2 * height, .rims = {0.1, 0.1}};
-      neck.is_cut = true;
-      neck.edge = 0.12;
+      DraftNeck neck = cut_bridge(2 * height);
       double area = 0;
       for (const bool is_upper : {false, true}) {
         const int count = is_upper ? 8 : 9;
@@ -176,21 +188,7 @@ TEST(ConformingSurface, ThinSidesOfBridgesAreMeshedAllAround) {
       draft.necks = {neck};
       mesh_necks(draft);
       ASSERT_GE(draft.made.triangles.size(), 17u);
-      double meshed = 0;
-      for (const FaceCorners& t : draft.made.triangles) {
-        std::array<Vector<3>, 3> flat;
-        double before = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Vector<3>& p = draft.made.vertices[t[k]];
-          const double angle = std::atan2(p[1], p[0]);
-          before = k == 0 ? angle : before + std::remainder(angle - before, 2 * pi);
-          flat[k] = Vector<3>(0.1 * before, p[2], 0);
-        }
-        const double part = 0.5 * (flat[1] - flat[0]).cross(flat[2] - flat[0])[2];
-        EXPECT_GT(part, 0) << "normals point into the fluid";
-        meshed += part;
-      }
-      EXPECT_NEAR(meshed, area, 1e-9 * area);
+      EXPECT_NEAR(unrolled_area(draft.made), area, 1e-9 * area);
     }
 }
 
