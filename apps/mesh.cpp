@@ -32,16 +32,16 @@ std::string text_of_place(const Vector<3>& p) {
 
 void print_surface(const BedMeshReport& report, std::string_view unit) {
   fmt::print("spheres      {}; {} bridges", grouped(report.spheres), grouped(report.necks));
-  if (report.clipped > 0) fmt::print("; {} cut by faces of the part", grouped(report.clipped));
-  if (report.cleared > 0)
-    fmt::print("; {} that {} nearly touches made smaller there, whole or in a layer", grouped(report.cleared),
-               report.clipped > 0 ? "a face of the part" : "an end of a period");
   if (report.shrunk_necks > 0)
     fmt::print(", {} of them narrower than asked for, by up to {:.0f} %, so that they stay apart",
                grouped(report.shrunk_necks), 100 * report.largest_neck_shrink);
   if (report.cut_fillets > 0) fmt::print(", {} cylinders at ends of periods", grouped(report.cut_fillets));
   if (report.widened_necks > 0) fmt::print(", {} wider", grouped(report.widened_necks));
   if (report.deepened_caps > 0) fmt::print(", {} caps deeper than asked for", grouped(report.deepened_caps));
+  if (report.clipped > 0) fmt::print("; {} spheres cut by faces of the part", grouped(report.clipped));
+  if (report.cleared > 0)
+    fmt::print("; {} spheres that {} nearly touches made smaller there, whole or in a layer",
+               grouped(report.cleared), report.clipped > 0 ? "a face of the part" : "an end of a period");
   if (report.gaps_at_edges > 0)
     fmt::print("; {} with a gap instead, at walls where no bridge fits into a flat part",
                grouped(report.gaps_at_edges));

@@ -182,13 +182,11 @@ class Circles {
   using Chains = std::vector<std::vector<std::uint32_t>>;
 
   /// Vertices along the parts of a line of two planes that are inside a piece and outside of the piece within
-  /// it; none if there are no such parts, or no flat face needs them.
+  /// it; none if there are no such parts.
   Chains chords_of(std::uint32_t p, std::size_t a, std::size_t b) {
     const std::array<std::size_t, 2> both = {a, b};
     const auto& circles = draft_.pieces[p].circles;
     const Circle &one = circles[a], &other = circles[b];
-    if (!draft_.options.solids && one.kind != Circle::Kind::contact && other.kind != Circle::Kind::contact)
-      return {};
     const double c = one.normal.dot(other.normal), sine2 = 1 - c * c;
     if (sine2 < 1e-12) return {};
     if (a > b) return chords_of(p, b, a);

@@ -22,30 +22,41 @@ void require_options(const SurfaceMeshOptions& options) {
         "least 0.1 widths of gaps and thicknesses of layers");
 }
 
-/// Vertices that no triangle has are left out: corners of a box inside of spheres.
+/// Vertices that no triangle has are left out: corners of a box inside of spheres. Those that lids alone have
+/// go to them.
 void leave_out_unused(ConformingSurface& made) {
-  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max(), of_lid = unused - 1;
   std::vector<std::uint32_t> number(made.vertices.size(), unused);
+  for (const FaceCorners& t : made.lids.triangles)
+    for (const std::uint32_t c : t) number[c] = of_lid;
   for (const FaceCorners& t : made.triangles)
     for (const std::uint32_t c : t) number[c] = 0;
+  std::vector<std::uint32_t> of_lids;
   std::uint32_t used = 0;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == unused) continue;
-    number[v] = used;
-    made.vertices[used] = made.vertices[v];
-    made.size[used++] = made.size[v];
+  for (std::uint32_t v = 0; v < number.size(); ++v) {
+    if (number[v] == of_lid) {
+      of_lids.push_back(v);
+      made.lids.vertices.push_back(made.vertices[v]);
+    } else if (number[v] != unused) {
+      number[v] = used;
+      made.vertices[used] = made.vertices[v];
+      made.size[used++] = made.size[v];
+    }
   }
   made.vertices.resize(used);
   made.size.resize(used);
-  for (FaceCorners& t : made.triangles)
-    for (std::uint32_t& c : t) c = number[c];
-  for (auto& t : made.prisms.tetrahedra)
-    for (std::uint32_t& c : t) c = number[c];
   for (auto& pairs : made.periodic) {
     std::erase_if(pairs,
-                  [&](const auto& pair) { return number[pair[0]] == unused || number[pair[1]] == unused; });
+                  [&](const auto& pair) { return number[pair[0]] >= of_lid || number[pair[1]] >= of_lid; });
     for (auto& pair : pairs) pair = {number[pair[0]], number[pair[1]]};
   }
+  for (const std::uint32_t v : of_lids) number[v] = used++;
+  const auto renumber = [&](auto& corners) {
+    for (std::uint32_t& c : corners) c = number[c];
+  };
+  std::ranges::for_each(made.triangles, renumber);
+  std::ranges::for_each(made.lids.triangles, renumber);
+  std::ranges::for_each(made.prisms.tetrahedra, renumber);
 }
 
 }  // namespace

@@ -50,6 +50,12 @@ struct PrismLayers {
   bool empty() const { return tetrahedra.empty(); }
 };
 
+/// Where solids that are no regions meet walls and ends of periods: triangles that close the holes of these.
+struct SurfaceLids {
+  std::vector<Vector<3>> vertices;     ///< numbered after those of the surface
+  std::vector<FaceCorners> triangles;  ///< of both
+};
+
 /// A neck as it was meshed: its radius may be other than asked for.
 struct MeshedNeck {
   /// The second is absent where the neck stands on a wall.
@@ -91,6 +97,7 @@ struct ConformingSurface {
   std::array<std::vector<std::array<std::uint32_t, 2>>, 3> periodic;
   std::vector<double> size;  ///< the length of edges asked for at each vertex
   PrismLayers prisms;
+  SurfaceLids lids;
   SurfaceStatement statement;
 };
 

@@ -33,15 +33,20 @@ VolumeMesh fill(const ConformingSurface& surface, const TetrahedraOptions& optio
   VolumeMesh mesh;
   const TetgenOptions tetgen = {.radius_over_edge = options.radius_over_edge,
                                 .least_angle = options.least_angle};
-  const SectionCuts cuts = section_cuts(surface, options.most_triangles);
-  if (cuts.count() > 1) try {
+  for (const double share : {1.0, 0.8}) {  // what fails in one place may pass where others are cut
+    const SectionCuts cuts =
+        section_cuts(surface, static_cast<std::size_t>(share * static_cast<double>(options.most_triangles)));
+    if (cuts.count() == 1) break;
+    try {
       mesh = fill_in_sections(surface, cuts, tetgen, report.peak_bytes, monitor);
       sides_of_triangles(mesh);
       report.sections = cuts.count();
+      break;
     } catch (const Error& error) {  // lids of a section may cross walls that are not convex
       if (error.code() != ErrorCode::bad_mesh) throw;
       report.sections_failed = true;
     }
+  }
   if (report.sections == 1) {
     mesh = run_tetgen(surface, tetgen, report.peak_bytes, monitor);
     take_regions_of_triangles(mesh);

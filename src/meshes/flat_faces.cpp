@@ -1,4 +1,4 @@
-// Flat faces of pieces: of caps, and with solids at the ends of periods and where necks begin or end.
+// Flat faces of pieces: of caps, at the ends of periods, and where necks begin or end.
 #include <map>
 
 #include "meshes/planar_part.hpp"
@@ -11,6 +11,25 @@ class FlatFaces {
   explicit FlatFaces(SurfaceDraft& draft) : draft_(draft) {}
 
   void mesh() {
+    if (draft_.options.solids) {
+      mesh_faces([](Circle::Kind) { return true; });
+      mesh_ends_of_necks();
+      return;
+    }
+    mesh_faces([](Circle::Kind kind) { return kind == Circle::Kind::contact; });
+    ConformingSurface& made = draft_.made;
+    const std::size_t patches = made.patches.size();
+    const auto first = static_cast<std::ptrdiff_t>(made.triangles.size());
+    mesh_faces([](Circle::Kind kind) { return kind == Circle::Kind::end; });
+    mesh_ends_of_necks();
+    made.lids.triangles.assign(made.triangles.begin() + first, made.triangles.end());
+    made.triangles.erase(made.triangles.begin() + first, made.triangles.end());
+    made.patch.resize(made.triangles.size());
+    made.patches.resize(patches);
+  }
+
+ private:
+  void mesh_faces(const std::function<bool(Circle::Kind)>& are_wanted) {
     for (const bool upper : {false, true})
       for (std::uint32_t p = 0; p < draft_.pieces.size(); ++p)
         for (std::size_t c = 0; c < draft_.pieces[p].circles.size(); ++c) {
@@ -18,9 +37,10 @@ class FlatFaces {
           if (!has_face(draft_.pieces[p], c) ||
               (circle.kind == Circle::Kind::end && draft_.is_lifted(circle.face)) != upper)
             continue;
-          if (circle.kind == Circle::Kind::contact || draft_.options.solids) make_face(p, c);
+          if (are_wanted(circle.kind)) make_face(p, c);
         }
-    if (!draft_.options.solids) return;
+  }
+  void mesh_ends_of_necks() {
     for (std::uint32_t n = 0; n < draft_.necks.size(); ++n)
       if (draft_.necks[n].wall) make_foot(n);
     for (const bool upper : {false, true})
@@ -29,7 +49,6 @@ class FlatFaces {
           if (draft_.necks[n].is_cut && draft_.boundary.repeats(axis)) make_end(n, axis, upper);
   }
 
- private:
   /// Whether something of a circle's disc is left: a ball that holds a whole face of a part that is cut out
   /// has chords there alone.
   bool has_face(const DraftPiece& piece, std::size_t c) const {

@@ -11,23 +11,17 @@ namespace bernal {
 namespace {
 
 using Kind = SurfacePatch::Kind;
+/// From a vertex to another.
+using DirectedEdge = std::array<std::uint32_t, 2>;
 
-/// Edges that one triangle alone has, of the patches that are meant, as that one runs.
-std::vector<DirectedEdge> edges_of_one_triangle(const ConformingSurface& surface,
-                                                const std::function<bool(std::uint32_t patch)>& is_meant) {
-  std::vector<FaceCorners> meant;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    if (is_meant(surface.patch[t])) meant.push_back(surface.triangles[t]);
-  std::vector<DirectedEdge> found;
-  for (const EdgeUse& use : open_edges(meant))
-    found.push_back(use.upwards ? DirectedEdge{use.low, use.high} : DirectedEdge{use.high, use.low});
-  std::ranges::sort(found);
-  return found;
+const Vector<3>& vertex_of(std::span<const Vector<3>> vertices, std::span<const Vector<3>> more,
+                           std::uint32_t number) {
+  return number < vertices.size() ? vertices[number] : more[number - vertices.size()];
 }
 
-/// Closed chains of edges in ascending order, of which as many begin as end at each vertex; each ends where
-/// it begins.
-std::vector<std::vector<std::uint32_t>> chains_of(const std::vector<DirectedEdge>& edges) {
+/// Closed chains of edges, in ascending order; each ends where it begins.
+std::vector<std::vector<std::uint32_t>> closed_chains_of(std::vector<DirectedEdge> edges) {
+  std::ranges::sort(edges);
   std::vector<std::vector<std::uint32_t>> chains;
   std::vector<std::uint8_t> used(edges.size(), 0);
   const auto next_from = [&](std::uint32_t vertex) {
@@ -46,7 +40,7 @@ std::vector<std::vector<std::uint32_t>> chains_of(const std::vector<DirectedEdge
       used[static_cast<std::size_t>(edge - edges.begin())] = 1;
       chain.push_back((*edge)[1]);
     }
-    chains.push_back(std::move(chain));
+    if (chain.back() == chain.front()) chains.push_back(std::move(chain));
   }
   return chains;
 }
@@ -60,28 +54,25 @@ void SurfaceParts::Range::take(const Range& other) {
 
 SurfaceParts::SurfaceParts(const ConformingSurface& surface, int axis) : surface_(surface), axis_(axis) {
   find_pieces();
-  holes_ = chains_of(edges_of_one_triangle(surface, [&](std::uint32_t patch) { return is_wall(patch); }));
-  is_on_wall_.assign(surface.vertices.size(), 0);
   std::vector<Range> extent(surface.patches.size(), {std::numeric_limits<double>::infinity(),
                                                      -std::numeric_limits<double>::infinity()});
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const std::uint32_t patch = surface.patch[t];
-    if (is_wall(patch)) {
-      for (const std::uint32_t corner : surface.triangles[t]) is_on_wall_[corner] = 1;
-      continue;
-    }
-    const Range range = range_of(t);
+    if (is_wall(patch)) continue;
+    const Range range = range_of(surface.triangles[t]);
     longest_edge_ = std::max(longest_edge_, range.high - range.low);
     if (!is_neck(patch)) extent[piece_[patch]].take(range);
   }
   for (const Range& of : extent) largest_extent_ = std::max(largest_extent_, of.high - of.low);
 }
 
-SurfaceParts::Range SurfaceParts::range_of(std::size_t triangle) const {
-  const FaceCorners& c = surface_.triangles[triangle];
-  const auto [low, high] = std::minmax(
-      {surface_.vertices[c[0]][axis_], surface_.vertices[c[1]][axis_], surface_.vertices[c[2]][axis_]});
-  return {low, high};
+SurfaceParts::Range SurfaceParts::range_of(const FaceCorners& triangle) const {
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const std::uint32_t c : triangle) {
+    const double at = vertex_of(surface_.vertices, surface_.lids.vertices, c)[axis_];
+    range.take({at, at});
+  }
+  return range;
 }
 
 bool SurfaceParts::is_wall(std::uint32_t patch) const {
@@ -123,21 +114,11 @@ std::vector<std::uint8_t> SurfaceParts::chosen_pieces(const Range& near) const {
   std::vector<std::uint8_t> chosen(surface_.patches.size(), 0);
   for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
     const std::uint32_t patch = surface_.patch[t];
-    if (is_wall(patch) || !range_of(t).meets(near)) continue;
+    if (is_wall(patch) || !range_of(surface_.triangles[t]).meets(near)) continue;
     if (!is_neck(patch)) chosen[piece_[patch]] = 1;
     for (const std::uint32_t piece : pieces_of_neck_[patch]) chosen[piece] = 1;
   }
   return chosen;
-}
-
-/// Where necks to spheres that are left out would begin: open edges that are not at walls.
-std::vector<DirectedEdge> SurfaceParts::rims_of(const PartBuilder& builder) const {
-  std::vector<DirectedEdge> edges = builder.open_edges(
-      [&](std::uint32_t patch) { return patch < surface_.patches.size() && !is_wall(patch); });
-  const std::vector<std::uint32_t>& vertex = builder.part().vertex;
-  std::erase_if(
-      edges, [&](const DirectedEdge& e) { return is_on_wall_[vertex[e[0]]] && is_on_wall_[vertex[e[1]]]; });
-  return edges;
 }
 
 PartOfSurface SurfaceParts::near(double low, double high) const {
@@ -152,44 +133,43 @@ PartOfSurface SurfaceParts::near(double low, double high) const {
   }
   Range all = near;
   for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
-    if (takes[surface_.patch[t]]) all.take(range_of(t));
-  PartBuilder builder(surface_.vertices);
+    if (takes[surface_.patch[t]]) all.take(range_of(surface_.triangles[t]));
+  PartBuilder builder(surface_.vertices, surface_.lids.vertices);
   PartOfSurface& part = builder.part();
   part.surface.patches = surface_.patches;
   part.surface.regions = surface_.regions;
   for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
     const std::uint32_t patch = surface_.patch[t];
-    if (is_wall(patch) ? !range_of(t).meets(all) : !takes[patch]) continue;
+    if (is_wall(patch) ? !range_of(surface_.triangles[t]).meets(all) : !takes[patch]) continue;
     builder.add(surface_.triangles[t], patch);
     part.triangles.push_back(t);
   }
   const auto lid = static_cast<std::uint32_t>(part.surface.patches.size());
   part.surface.patches.push_back({.kind = Kind::period_end});  // beyond which nothing is
-  // Else the spheres are filled too, and need not be closed.
-  if (surface_.regions.size() == 1) {
-    for (const std::vector<std::uint32_t>& chain : chains_of(rims_of(builder))) builder.add_cone(chain, lid);
-    for (std::vector<std::uint32_t> hole : holes_) {
-      Range range{surface_.vertices[hole[0]][axis_], surface_.vertices[hole[0]][axis_]};
-      for (const std::uint32_t v : hole)
-        range.take({surface_.vertices[v][axis_], surface_.vertices[v][axis_]});
-      if (!range.meets(all)) continue;
-      for (std::uint32_t& v : hole) v = builder.number_of(v);
-      builder.add_cone(hole, lid);
-    }
+  for (const FaceCorners& triangle : surface_.lids.triangles)
+    if (range_of(triangle).meets(all)) builder.add(triangle, lid);
+  std::array<std::vector<DirectedEdge>, 2> open;  // of spheres and necks, and of walls
+  for (const EdgeUse& use : open_edges(part.surface.triangles)) {
+    const std::uint32_t patch = part.surface.patch[use.triangle];
+    open[patch == lid || is_wall(patch) ? 1 : 0].push_back(use.upwards ? DirectedEdge{use.low, use.high}
+                                                                       : DirectedEdge{use.high, use.low});
   }
-  for (const std::vector<std::uint32_t>& chain :
-       chains_of(builder.open_edges([](std::uint32_t) { return true; })))
-    builder.add_cone(chain, lid);
+  for (const bool at_walls : {false, true})
+    for (const std::vector<std::uint32_t>& chain : closed_chains_of(std::move(open[at_walls ? 1 : 0]))) {
+      const bool is_above = part.surface.vertices[chain[0]][axis_] > (all.low + all.high) / 2;
+      const double out = !at_walls ? 0 : is_above ? 1 : -1;
+      builder.add_cone(chain, out * Vector<3>::Unit(axis_), lid);
+    }
   return std::move(part);
 }
 
 std::uint32_t PartBuilder::number_of(std::uint32_t vertex) {
-  if (number_.empty()) number_.assign(vertices_.size(), not_of_whole);
+  if (number_.empty()) number_.assign(vertices_.size() + more_.size(), not_of_whole);
   std::uint32_t& number = number_[vertex];
   if (number == not_of_whole) {
     number = static_cast<std::uint32_t>(part_.vertex.size());
-    part_.vertex.push_back(vertex);
-    part_.surface.vertices.push_back(vertices_[vertex]);
+    part_.vertex.push_back(vertex < vertices_.size() ? vertex : not_of_whole);
+    part_.surface.vertices.push_back(vertex_of(vertices_, more_, vertex));
   }
   return number;
 }
@@ -201,20 +181,22 @@ void PartBuilder::add(const FaceCorners& triangle, std::uint32_t patch) {
   part_.surface.patch.push_back(patch);
 }
 
-std::vector<DirectedEdge> PartBuilder::open_edges(
-    const std::function<bool(std::uint32_t patch)>& is_meant) const {
-  return edges_of_one_triangle(part_.surface, is_meant);
-}
-
-void PartBuilder::add_cone(const std::vector<std::uint32_t>& chain, std::uint32_t lid) {
+void PartBuilder::add_cone(const std::vector<std::uint32_t>& chain, const Vector<3>& out,
+                           std::uint32_t patch) {
+  Bounds<3> bounds = Bounds<3>::of_nothing();
   Vector<3> middle = Vector<3>::Zero();
-  for (std::size_t k = 1; k < chain.size(); ++k) middle += part_.surface.vertices[chain[k]];
+  for (std::size_t k = 1; k < chain.size(); ++k) {
+    const Vector<3>& vertex = part_.surface.vertices[chain[k]];
+    bounds.add(vertex);
+    middle += vertex;
+  }
   const auto apex = static_cast<std::uint32_t>(part_.surface.vertices.size());
-  part_.surface.vertices.push_back(middle / static_cast<double>(chain.size() - 1));
+  part_.surface.vertices.push_back(middle / static_cast<double>(chain.size() - 1) +
+                                   bounds.diagonal() / 2 * out);
   part_.vertex.push_back(not_of_whole);
   for (std::size_t k = 1; k < chain.size(); ++k) {
     part_.surface.triangles.push_back({apex, chain[k], chain[k - 1]});
-    part_.surface.patch.push_back(lid);
+    part_.surface.patch.push_back(patch);
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <functional>
+#include <span>
 #include <vector>
 
 #include "meshes/conforming_surface.hpp"
@@ -9,9 +9,6 @@
 namespace bernal {
 
 constexpr std::uint32_t not_of_whole = 0xFFFFFFFF;
-
-/// From a vertex to another.
-using DirectedEdge = std::array<std::uint32_t, 2>;
 
 /// A part of a surface, with vertices of its own.
 struct PartOfSurface {
@@ -23,20 +20,23 @@ struct PartOfSurface {
 /// Numbers vertices of a part as its triangles need them.
 class PartBuilder {
  public:
-  /// Vertices of the whole, in which triangles are given.
-  explicit PartBuilder(const std::vector<Vector<3>>& vertices) : vertices_(vertices) {}
+  /// Vertices of the whole, in which triangles are given, and more that are numbered after them and are not
+  /// of the whole.
+  explicit PartBuilder(const std::vector<Vector<3>>& vertices, std::span<const Vector<3>> more = {})
+      : vertices_(vertices), more_(more) {}
   void add(const FaceCorners& triangle, std::uint32_t patch);
-  /// Of a vertex of the whole, in the part.
-  std::uint32_t number_of(std::uint32_t vertex);
-  /// Edges, in numbers of the part, that one triangle of the patches that are meant has alone.
-  std::vector<DirectedEdge> open_edges(const std::function<bool(std::uint32_t patch)>& is_meant) const;
-  /// Triangles from a closed chain of edges, in numbers of the part, to its middle.
-  void add_cone(const std::vector<std::uint32_t>& chain, std::uint32_t lid);
+  /// Triangles from a closed chain of edges, in numbers of the part, to a point that stands over its middle:
+  /// by half of its diagonal, else they would nearly lie in one plane.
+  void add_cone(const std::vector<std::uint32_t>& chain, const Vector<3>& out, std::uint32_t patch);
   const PartOfSurface& part() const { return part_; }
   PartOfSurface& part() { return part_; }
 
  private:
+  /// Of a vertex of the whole, in the part.
+  std::uint32_t number_of(std::uint32_t vertex);
+
   const std::vector<Vector<3>>& vertices_;
+  std::span<const Vector<3>> more_;
   std::vector<std::uint32_t> number_;
   PartOfSurface part_;
 };
@@ -47,8 +47,8 @@ class SurfaceParts {
   SurfaceParts(const ConformingSurface&, int axis);
 
   /// The spheres that reach into an interval along the axis or come near it, whole, with the necks between
-  /// them, and the walls beside these. Lids close necks that lead to spheres left out, the holes of walls,
-  /// and the walls beyond all of these.
+  /// them, and the walls beside these. Lids close the holes of walls, and the walls beyond all of these.
+  /// Necks to spheres that are left out are missing: spheres that these joined are open there.
   PartOfSurface near(double low, double high) const;
   /// The largest extent of a sphere along the axis.
   double largest_extent() const { return largest_extent_; }
@@ -59,20 +59,17 @@ class SurfaceParts {
     bool meets(const Range& other) const { return low <= other.high && other.low <= high; }
     void take(const Range& other);
   };
-  Range range_of(std::size_t triangle) const;
+  Range range_of(const FaceCorners& triangle) const;
   bool is_wall(std::uint32_t patch) const;
   bool is_neck(std::uint32_t patch) const;
   void find_pieces();
   std::vector<std::uint8_t> chosen_pieces(const Range& near) const;
-  std::vector<DirectedEdge> rims_of(const PartBuilder&) const;
 
   const ConformingSurface& surface_;
   int axis_;
   std::vector<std::uint32_t> piece_;                        ///< of each patch that is no neck and no wall
   std::vector<std::uint32_t> piece_of_vertex_;              ///< `not_of_whole` on walls and inside of necks
   std::vector<std::vector<std::uint32_t>> pieces_of_neck_;  ///< by patch
-  std::vector<std::uint8_t> is_on_wall_;                    ///< of each vertex
-  std::vector<std::vector<std::uint32_t>> holes_;  ///< in walls, where necks and cut spheres stand; chains
   double largest_extent_ = 0, longest_edge_ = 0;
 };
 

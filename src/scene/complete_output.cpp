@@ -84,9 +84,7 @@ void complete_output(Output& output, const Scene& scene) {
   if (schema::is_tilted(scene)) require_held(table, &OutputTable::tilted, "tilted periodic box", section);
   if (schema::is_repeated_mesh(scene))
     require_held(table, &OutputTable::repeated_mesh, "packing in a mesh that repeats itself", section);
-  const bool shrinks = output.contact == ContactTreatment::none || output.contact == ContactTreatment::gap ||
-                       output.contact == ContactTreatment::shrink;
-  if (!table.has_bridges() && !shrinks) {
+  if (!table.has_bridges() && output.contact != ContactTreatment::none && !shrinks(output.contact)) {
     std::vector<std::string_view> others;
     for (const OutputTable* other : output_tables())
       if (other->has_bridges()) others.push_back(other->name());

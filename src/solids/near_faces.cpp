@@ -63,11 +63,12 @@ NearFaces::NearFaces(const ConvexPart& part, const Vector<3>& p) {
   for (const ConvexPart::Corner& corner : part.corners) add(p - corner.point, {least_cap, least_distance});
 }
 
-double NearFaces::clear_radius(double radius, double gap) const {
+double NearFaces::clear_radius(double radius, double gap, double share) const {
   for (bool changed = true; changed;) {
     changed = false;
     for (const Feature& feature : features_) {
-      const double nearest = std::max(gap, feature.nearest), lowest = std::max(gap, feature.lowest);
+      const double nearest = std::max(gap, share * feature.nearest),
+                   lowest = std::max(gap, share * feature.lowest);
       if (!(feature.distance - radius < nearest * radius && radius - feature.distance < lowest * radius))
         continue;
       // Where rounding says that it is still too near it goes on by roundoffs.
@@ -78,19 +79,21 @@ double NearFaces::clear_radius(double radius, double gap) const {
   return radius;
 }
 
-bool NearFaces::clear(double& radius, std::span<double> layers, double gap) const {
-  double share = 1;
+bool NearFaces::clear(double& radius, std::span<double> layers, double gap, double share) const {
+  double left = 1;
   const auto make_smaller = [&](double& r) {
-    const double smaller = clear_radius(share * r, gap);
-    share = smaller / r;
+    const double smaller = clear_radius(left * r, gap, share);
+    left = smaller / r;
     r = smaller;
   };
   make_smaller(radius);
   for (double& layer : std::views::reverse(layers)) make_smaller(layer);
-  return share < 1;
+  return left < 1;
 }
 
-void clear_of_ends(Solids& solids, double gap) {
+void clear_of_ends(Solids& solids, double gap, const std::vector<WallFoot>& feet) {
+  const bool has_gaps = shrinks(solids.contacts.treatment);
+  const double share = has_gaps ? 1 : 1.0 / 3;
   constexpr double unlimited = std::numeric_limits<double>::infinity();
   const Boundary<3> boundary = boundary_of<3>(solids.domain);
   Bounds<3> ends{Vector<3>::Constant(-unlimited), Vector<3>::Constant(unlimited)};
@@ -100,9 +103,10 @@ void clear_of_ends(Solids& solids, double gap) {
       ends.upper[k] = boundary.origin[k] + boundary.edges[k];
     }
   for (std::size_t i = 0; i < solids.spheres.size(); ++i) {
+    if (std::ranges::binary_search(feet, i, {}, &WallFoot::sphere)) continue;
     const double packed = solids.spheres.r[i];
     solids.cleared += NearFaces(ends, Vector<3>(solids.spheres.center(i)))
-                          .clear(solids.spheres.r[i], solids.shells.of(i), gap);
+                          .clear(solids.spheres.r[i], solids.shells.of(i), has_gaps ? gap : 0, share);
     solids.contacts.largest_change =
         std::max(solids.contacts.largest_change, 1 - solids.spheres.r[i] / packed);
   }

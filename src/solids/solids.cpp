@@ -303,9 +303,7 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   Solids made{.spheres = spheres, .domain = domain, .pieces = {}, .bridges = {}, .contacts = {}};
   made.bridge_radius = options.bridge_radius;
   made.bridge_angle = options.bridge_angle;
-  const bool shrinks =
-      options.contact == ContactTreatment::gap || options.contact == ContactTreatment::shrink;
-  if (shrinks)
+  if (shrinks(options.contact))
     made.contacts = shrink_contacts(made.spheres, domain, options.contact, options.gap, false, monitor);
   std::vector<Bridge> bridges;
   std::vector<WallFoot> feet;
@@ -328,9 +326,9 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   made.end_distance = ends.distance;
   made.domain = ends.domain;
   wrap(made.spheres, made.domain);
-  if (shrinks && options.clear_of_ends) clear_of_ends(made, options.gap);
-  made.pieces = pieces_of(made.spheres, made.domain);
-  if (shrinks) {
+  if (shrinks(options.contact)) {
+    if (options.clear_of_ends) clear_of_ends(made, options.gap, {});
+    made.pieces = pieces_of(made.spheres, made.domain);
     // Moved images were rounded, so the gap is proven again.
     if (!has_gap(made.spheres, made.domain, options.gap, monitor)) {
       ContactReport again =
@@ -345,13 +343,17 @@ Solids solids_of(const Spheres<dynamic>& spheres, const Domain& domain, const So
   report = {.treatment = options.contact, .gap = options.gap, .spheres = spheres.size()};
   report.volume_before = report.volume_after = volume_of_balls(made.spheres);
   report.domain_volume = volume_of(domain);
-  if (options.contact == ContactTreatment::none) return made;
-  const std::vector<Bond> bonds = bonds_of(made.spheres, made.domain, options.gap);
+  std::vector<Bond> bonds;
+  if (options.contact != ContactTreatment::none) bonds = bonds_of(made.spheres, made.domain, options.gap);
   report.pairs = bonds.size();
+  if (options.clear_of_ends) clear_of_ends(made, options.gap, feet);
+  made.pieces = pieces_of(made.spheres, made.domain);
+  if (options.contact == ContactTreatment::none) return made;
   if (joins(options.contact)) {
     made.bridges = bridges_of(made.spheres, made.domain, bonds, options, report);
     report.walls = near_walls(made.spheres, made.domain, options.gap, nullptr).size();
   } else {
+    if (made.cleared > 0) bonds = bonds_of(made.spheres, made.domain, options.gap);
     const auto caps = caps_of(made.spheres, made.domain, bonds, report);
     if (add_caps(caps, made.spheres, bonds, options.gap, made.pieces)) report.proven_gap = options.gap;
   }

@@ -68,7 +68,7 @@ struct SolidsOptions {
   /// begin. 0: none.
   double bridge_angle = 0;
   InnerSpheres shells = {};
-  bool clear_of_ends = false;  ///< of periods, with gap and shrink: see `clear_of_ends`
+  bool clear_of_ends = false;  ///< of periods: see `clear_of_ends`
 };
 
 /// Prepares spheres for a mesher. Proven, in exact arithmetic on the given doubles: for gap and shrink what

@@ -2,11 +2,14 @@
 #include "meshes/sections.hpp"
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "geometry/edges.hpp"
+#include "geometry/measures.hpp"
 #include "meshes/fill.hpp"
 #include "meshes/mesh_quality.hpp"
 #include "meshes/triangle_sides.hpp"
@@ -38,11 +41,14 @@ Spheres<dynamic> column_of_balls(double height, bool is_periodic) {
   return spheres;
 }
 
-ConformingSurface surface_in(const Domain& domain, ContactTreatment contact, bool solids) {
-  const auto* box = std::get_if<Box>(&domain);
-  const Spheres<dynamic> spheres = column_of_balls(14, box != nullptr);
+ConformingSurface surface_of(const Spheres<dynamic>& spheres, const Domain& domain, ContactTreatment contact,
+                             bool solids) {
   const Solids made = solids_of(spheres, domain, {.contact = contact, .gap = 0.1, .bridge_radius = 0.3});
   return conforming_surface(made, {.sphere_edge = 0.5, .neck_edge = 0.3, .solids = solids});
+}
+
+ConformingSurface surface_in(const Domain& domain, ContactTreatment contact, bool solids) {
+  return surface_of(column_of_balls(14, std::holds_alternative<Box>(domain)), domain, contact, solids);
 }
 
 const Domain in_cylinder = Cylinder{.radius = 0.8, .height = 14};
@@ -61,21 +67,57 @@ TEST(Sections, AreOfOddCountAndNoThinnerThanTwoSpheres) {
   for (std::size_t k = 1; k < cuts.at.size(); ++k) EXPECT_GT(cuts.at[k] - cuts.at[k - 1], 1.79);
 }
 
-class FillInSections : public ::testing::TestWithParam<std::tuple<bool, bool>> {};
+/// The walls and ends of periods with the lids of a surface that has the fluid alone.
+Mesh walls_with_lids(const ConformingSurface& surface) {
+  Mesh closed;
+  closed.vertices = surface.vertices;
+  closed.vertices.insert(closed.vertices.end(), surface.lids.vertices.begin(), surface.lids.vertices.end());
+  closed.triangles = surface.lids.triangles;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (const auto kind = surface.patches[surface.patch[t]].kind;
+        kind == SurfacePatch::Kind::wall || kind == SurfacePatch::Kind::period_end)
+      closed.triangles.push_back(surface.triangles[t]);
+  return closed;
+}
+
+TEST(Sections, LidsCloseWallsWhereSpheresAndBridgesStand) {
+  for (const ContactTreatment contact :
+       {ContactTreatment::bridge, ContactTreatment::gap, ContactTreatment::cap}) {
+    const ConformingSurface surface = surface_in(in_periodic_box, contact, false);
+    const Mesh closed = walls_with_lids(surface);
+    EXPECT_FALSE(surface.lids.triangles.empty());
+    EXPECT_TRUE(open_edges(closed.triangles).empty());
+    EXPECT_NEAR(signed_volume(closed), 1.4 * 1.4 * 14, 1e-9);
+    EXPECT_TRUE(surface_in(in_periodic_box, contact, true).lids.triangles.empty());
+  }
+}
+
+TEST(Sections, LidsCloseWallsUnderTheFeetOfBridges) {
+  Spheres<dynamic> on_floor(3);
+  on_floor.push_back(Vector<3>(0.1, 0, 0.46), 0.45);
+  const ConformingSurface surface = surface_of(on_floor, in_cylinder, ContactTreatment::bridge, false);
+  EXPECT_FALSE(surface.lids.triangles.empty());
+  EXPECT_TRUE(open_edges(walls_with_lids(surface).triangles).empty());
+}
+
+/// Ends of periods cut bridges in the last one, some of which lead out of a section.
+enum class Balls { bridged_in_cylinder, apart_in_box, bridged_in_box };
+class FillInSections : public ::testing::TestWithParam<std::tuple<Balls, bool>> {};
 
 TEST_P(FillInSections, KeepsTheSurfaceAndTheVolumes) {
   if (program_at("tetgen").empty()) GTEST_SKIP() << "tetgen is not installed";
-  const auto [is_periodic, solids] = GetParam();
-  const ConformingSurface surface = is_periodic ? surface_in(in_periodic_box, ContactTreatment::gap, solids)
-                                                : surface_in(in_cylinder, ContactTreatment::bridge, solids);
-  if (!is_periodic) {
-    ASSERT_FALSE(surface.necks.empty());
-  }
+  const auto [balls, solids] = GetParam();
+  const bool are_bridged = balls != Balls::apart_in_box;
+  const ConformingSurface surface =
+      surface_in(balls == Balls::bridged_in_cylinder ? in_cylinder : in_periodic_box,
+                 are_bridged ? ContactTreatment::bridge : ContactTreatment::gap, solids);
+  ASSERT_NE(surface.necks.empty(), are_bridged);
   const TetrahedraOptions options{.most_triangles = surface.triangles.size() / 4};
   ASSERT_EQ(section_cuts(surface, options.most_triangles).count(), 5U);
   FillReport report, whole_report;
   const VolumeMesh mesh = fill(surface, options, report), whole = fill(surface, {}, whole_report);
   EXPECT_EQ(report.sections, 5U);
+  EXPECT_FALSE(report.sections_failed);
   EXPECT_EQ(whole_report.sections, 1U);
   EXPECT_LT(report.volume_error, 1e-10);
   EXPECT_NO_THROW(sides_of_triangles(mesh));
@@ -88,11 +130,17 @@ TEST_P(FillInSections, KeepsTheSurfaceAndTheVolumes) {
   EXPECT_TRUE(mesh.vertices == again.vertices && mesh.tetrahedra == again.tetrahedra);
 }
 
-INSTANTIATE_TEST_SUITE_P(Beds, FillInSections, ::testing::Combine(::testing::Bool(), ::testing::Bool()),
-                         [](const auto& of) {
-                           return std::string(std::get<0>(of.param) ? "PeriodicBox" : "Cylinder") +
-                                  (std::get<1>(of.param) ? "WithSolids" : "FluidAlone");
-                         });
+std::string name_of(const ::testing::TestParamInfo<std::tuple<Balls, bool>>& of) {
+  constexpr std::array<const char*, 3> names = {"Cylinder", "PeriodicBox", "BridgesInPeriodicBox"};
+  const auto [balls, solids] = of.param;
+  return std::string(names[static_cast<std::size_t>(balls)]) + (solids ? "WithSolids" : "FluidAlone");
+}
+
+INSTANTIATE_TEST_SUITE_P(Beds, FillInSections,
+                         ::testing::Combine(::testing::Values(Balls::bridged_in_cylinder, Balls::apart_in_box,
+                                                              Balls::bridged_in_box),
+                                            ::testing::Bool()),
+                         name_of);
 
 }  // namespace sections_test
 }  // namespace bernal

@@ -18,4 +18,9 @@ constexpr bool joins(ContactTreatment treatment) {
   return treatment == ContactTreatment::bridge || treatment == ContactTreatment::fillet;
 }
 
+/// Whether spheres are made smaller until they are the gap apart.
+constexpr bool shrinks(ContactTreatment treatment) {
+  return treatment == ContactTreatment::gap || treatment == ContactTreatment::shrink;
+}
+
 }  // namespace bernal
