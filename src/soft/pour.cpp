@@ -128,6 +128,7 @@ StageEnd pour(SpheresInBed& in_bed, Reporter& report, const BedTop& top,
   for (double rise = how.taps > 0 ? first_rise_tapped : first_rise; end == StageEnd::full && room > 0;
        volume *= 1 + rise, rise *= 2) {
     const bool to_the_brim = volume >= whole->volume();
+    const bool is_last = to_the_brim || given > 0 || part.target.is_open();
     const double level = given > 0 ? height : heights.holding(volume);
     part.container = to_the_brim ? whole : cut_by_planes(whole, top.planes(level), volume);
     SpheresInBed now(part, supply, report.effects);
@@ -137,13 +138,13 @@ StageEnd pour(SpheresInBed& in_bed, Reporter& report, const BedTop& top,
     try {
       if (how.taps > 0 && how.finds_room) tap(*poured, of_part, how.taps, how.first_tap);
       end = relax_to_pour({.patience = how.taps > 0 ? patience_with_tapped : Relax{}.patience}, *poured,
-                          of_part);
+                          of_part, !is_last);
     } catch (const Cancelled&) {
       end = StageEnd::cancelled;
       if (poured->bed().size() == 0) keep_what_fits(*poured);
     }
     how.finds_room = how.finds_room && end != StageEnd::full;
-    if (to_the_brim || given > 0 || part.target.is_open()) break;
+    if (is_last) break;
     // What fits only touching both the level and walls is squeezed in: the level is too low.
     if (poured->is_snug(largest) && !in_bed.is_snug(largest)) end = StageEnd::full;
   }

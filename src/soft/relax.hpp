@@ -86,6 +86,7 @@ StageEnd relax_by_the_book(Spheres<D>& spheres, Vector<D>& edges, SpheresInBox& 
 StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report);
 
 /// The same of spheres that will be a bed, and lie in it as chance has it: few do not become a lattice.
-StageEnd relax_to_pour(const Relax& options, SpheresInBed& in_bed, Reporter& report);
+/// `rises`: where they do not fit they get more room, and no arrangement of few is searched for.
+StageEnd relax_to_pour(const Relax& options, SpheresInBed& in_bed, Reporter& report, bool rises);
 
 }  // namespace bernal

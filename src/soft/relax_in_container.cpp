@@ -355,7 +355,8 @@ bool is_dilute(const SpheresInBed& in_bed) {
                                        dilute * task.attainable * task.container->volume();
 }
 
-StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report, bool pours) {
+StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report, bool pours,
+                              bool searches) {
   enum class Step { begin, insert, relax, finish } step = Step::begin;
   StageEnd end = StageEnd::converged;
   const Resumable part(report, "relax in container", [&](Archive& a) { a(step, end); });
@@ -376,7 +377,8 @@ StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Report
       const EffectTimer timer(report.effects["relaxation"]);
       return Relaxation(in_bed, report, options, pours).run();
     };
-    return place_few(insert_what_else_fits(in_bed, report, relax()), in_bed, report, !pours);
+    const StageEnd full = insert_what_else_fits(in_bed, report, relax());
+    return searches ? place_few(full, in_bed, report, !pours) : full;
   };
   if (step != Step::finish) end = relaxed();
   step = Step::finish;
@@ -386,11 +388,11 @@ StageEnd relaxed_in_container(const Relax& options, SpheresInBed& in_bed, Report
 }  // namespace
 
 StageEnd relax_in_container(const Relax& options, SpheresInBed& in_bed, Reporter& report) {
-  return relaxed_in_container(options, in_bed, report, false);
+  return relaxed_in_container(options, in_bed, report, false, true);
 }
 
-StageEnd relax_to_pour(const Relax& options, SpheresInBed& in_bed, Reporter& report) {
-  return relaxed_in_container(options, in_bed, report, true);
+StageEnd relax_to_pour(const Relax& options, SpheresInBed& in_bed, Reporter& report, bool rises) {
+  return relaxed_in_container(options, in_bed, report, true, !rises);
 }
 
 }  // namespace bernal
