@@ -56,6 +56,7 @@ void leave_out_unused(ConformingSurface& made) {
   };
   std::ranges::for_each(made.triangles, renumber);
   std::ranges::for_each(made.lids.triangles, renumber);
+  std::ranges::for_each(made.lids.chords, renumber);
   std::ranges::for_each(made.prisms.tetrahedra, renumber);
 }
 

@@ -54,6 +54,8 @@ struct PrismLayers {
 struct SurfaceLids {
   std::vector<Vector<3>> vertices;     ///< numbered after those of the surface
   std::vector<FaceCorners> triangles;  ///< of both
+  /// Chains of vertices across lids, where the plane of a rim meets them in which a neck begins.
+  std::vector<std::vector<std::uint32_t>> chords;
 };
 
 /// A neck as it was meshed: its radius may be other than asked for.

@@ -26,6 +26,13 @@ class FlatFaces {
     made.triangles.erase(made.triangles.begin() + first, made.triangles.end());
     made.patch.resize(made.triangles.size());
     made.patches.resize(patches);
+    const auto is_of = [](const DraftPiece& piece, const Chord& chord, Circle::Kind kind) {
+      return std::ranges::any_of(chord.circles, [&](std::size_t c) { return piece.circles[c].kind == kind; });
+    };
+    for (const DraftPiece& piece : draft_.pieces)
+      for (const Chord& chord : piece.chords)
+        if (is_of(piece, chord, Circle::Kind::neck) && is_of(piece, chord, Circle::Kind::end))
+          made.lids.chords.push_back(chord.ids);
   }
 
  private:

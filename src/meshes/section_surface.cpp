@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 
 #include "core/disjoint_sets.hpp"
 #include "geometry/edges.hpp"
@@ -19,26 +20,41 @@ const Vector<3>& vertex_of(std::span<const Vector<3>> vertices, std::span<const 
   return number < vertices.size() ? vertices[number] : more[number - vertices.size()];
 }
 
-/// Closed chains of edges, in ascending order; each ends where it begins.
-std::vector<std::vector<std::uint32_t>> closed_chains_of(std::vector<DirectedEdge> edges) {
+using Chain = std::vector<std::uint32_t>;
+
+/// Closed chains of edges; each ends where it begins. Where no edge goes on, one of `links` may, either way.
+std::vector<Chain> closed_chains_of(std::vector<DirectedEdge> edges, const std::vector<Chain>& links) {
   std::ranges::sort(edges);
-  std::vector<std::vector<std::uint32_t>> chains;
-  std::vector<std::uint8_t> used(edges.size(), 0);
-  const auto next_from = [&](std::uint32_t vertex) {
-    auto edge = std::ranges::lower_bound(edges, std::array{vertex, std::uint32_t{0}});
-    while (edge != edges.end() && (*edge)[0] == vertex &&
-           used[static_cast<std::size_t>(edge - edges.begin())])
-      ++edge;
-    return edge != edges.end() && (*edge)[0] == vertex ? edge : edges.end();
+  std::vector<std::uint8_t> used(edges.size(), 0), is_link_used(links.size(), 0);
+  std::multimap<std::uint32_t, std::size_t> link_at;
+  for (std::size_t k = 0; k < links.size(); ++k)
+    for (const std::uint32_t end : {links[k].front(), links[k].back()}) link_at.emplace(end, k);
+  const auto goes_on = [&](Chain& chain) {
+    const std::uint32_t at = chain.back();
+    for (auto edge = std::ranges::lower_bound(edges, std::array{at, std::uint32_t{0}});
+         edge != edges.end() && (*edge)[0] == at; ++edge) {
+      std::uint8_t& is_used = used[static_cast<std::size_t>(edge - edges.begin())];
+      if (is_used) continue;
+      is_used = 1;
+      chain.push_back((*edge)[1]);
+      return true;
+    }
+    for (auto [link, last] = link_at.equal_range(at); link != last; ++link) {
+      if (is_link_used[link->second]) continue;
+      is_link_used[link->second] = 1;
+      Chain along = links[link->second];
+      if (along.front() != at) std::ranges::reverse(along);
+      chain.insert(chain.end(), along.begin() + 1, along.end());
+      return true;
+    }
+    return false;
   };
+  std::vector<Chain> chains;
   for (std::size_t first = 0; first < edges.size(); ++first) {
     if (used[first]) continue;
-    std::vector<std::uint32_t> chain{edges[first][0]};
-    for (auto edge = edges.begin() + static_cast<std::ptrdiff_t>(first);
-         edge != edges.end() && (chain.size() == 1 || chain.back() != chain.front());
-         edge = next_from(chain.back())) {
-      used[static_cast<std::size_t>(edge - edges.begin())] = 1;
-      chain.push_back((*edge)[1]);
+    used[first] = 1;
+    Chain chain{edges[first][0], edges[first][1]};
+    while (chain.back() != chain.front() && goes_on(chain)) {
     }
     if (chain.back() == chain.front()) chains.push_back(std::move(chain));
   }
@@ -115,7 +131,7 @@ std::vector<std::uint8_t> SurfaceParts::chosen_pieces(const Range& near) const {
   for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
     const std::uint32_t patch = surface_.patch[t];
     if (is_wall(patch) || !range_of(surface_.triangles[t]).meets(near)) continue;
-    if (!is_neck(patch)) chosen[piece_[patch]] = 1;
+    chosen[is_neck(patch) ? patch : piece_[patch]] = 1;
     for (const std::uint32_t piece : pieces_of_neck_[patch]) chosen[piece] = 1;
   }
   return chosen;
@@ -128,8 +144,9 @@ PartOfSurface SurfaceParts::near(double low, double high) const {
   for (std::uint32_t p = 0; p < takes.size(); ++p) {
     if (is_wall(p)) continue;
     const auto& pieces = pieces_of_neck_[p];
-    takes[p] = is_neck(p) ? !pieces.empty() && std::ranges::all_of(pieces, [&](auto k) { return chosen[k]; })
-                          : chosen[piece_[p]];
+    takes[p] = !is_neck(p)      ? chosen[piece_[p]]
+               : pieces.empty() ? chosen[p]
+                                : std::ranges::all_of(pieces, [&](auto k) { return chosen[k] != 0; });
   }
   Range all = near;
   for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
@@ -154,12 +171,15 @@ PartOfSurface SurfaceParts::near(double low, double high) const {
     open[patch == lid || is_wall(patch) ? 1 : 0].push_back(use.upwards ? DirectedEdge{use.low, use.high}
                                                                        : DirectedEdge{use.high, use.low});
   }
-  for (const bool at_walls : {false, true})
-    for (const std::vector<std::uint32_t>& chain : closed_chains_of(std::move(open[at_walls ? 1 : 0]))) {
-      const bool is_above = part.surface.vertices[chain[0]][axis_] > (all.low + all.high) / 2;
-      const double out = !at_walls ? 0 : is_above ? 1 : -1;
-      builder.add_cone(chain, out * Vector<3>::Unit(axis_), lid);
-    }
+  std::vector<Chain> chords;
+  for (const Chain& chord : surface_.lids.chords)
+    if (const Chain there = builder.numbers_of(chord); !there.empty()) chords.push_back(there);
+  for (const Chain& rim : closed_chains_of(std::move(open[0]), chords))
+    builder.add_cone(rim, Vector<3>::Zero(), lid);
+  for (const Chain& end : closed_chains_of(std::move(open[1]), {})) {
+    const bool is_above = part.surface.vertices[end[0]][axis_] > (all.low + all.high) / 2;
+    builder.add_cone(end, (is_above ? 1.0 : -1.0) * Vector<3>::Unit(axis_), lid);
+  }
   return std::move(part);
 }
 
@@ -172,6 +192,14 @@ std::uint32_t PartBuilder::number_of(std::uint32_t vertex) {
     part_.surface.vertices.push_back(vertex_of(vertices_, more_, vertex));
   }
   return number;
+}
+
+std::vector<std::uint32_t> PartBuilder::numbers_of(std::vector<std::uint32_t> vertices) const {
+  for (std::uint32_t& vertex : vertices) {
+    vertex = number_.empty() ? not_of_whole : number_[vertex];
+    if (vertex == not_of_whole) return {};
+  }
+  return vertices;
 }
 
 void PartBuilder::add(const FaceCorners& triangle, std::uint32_t patch) {

@@ -25,6 +25,8 @@ class PartBuilder {
   explicit PartBuilder(const std::vector<Vector<3>>& vertices, std::span<const Vector<3>> more = {})
       : vertices_(vertices), more_(more) {}
   void add(const FaceCorners& triangle, std::uint32_t patch);
+  /// In the part; nothing where that does not have all of them.
+  std::vector<std::uint32_t> numbers_of(std::vector<std::uint32_t> vertices) const;
   /// Triangles from a closed chain of edges, in numbers of the part, to a point that stands over its middle:
   /// by half of its diagonal, else they would nearly lie in one plane.
   void add_cone(const std::vector<std::uint32_t>& chain, const Vector<3>& out, std::uint32_t patch);
@@ -47,8 +49,8 @@ class SurfaceParts {
   SurfaceParts(const ConformingSurface&, int axis);
 
   /// The spheres that reach into an interval along the axis or come near it, whole, with the necks between
-  /// them, and the walls beside these. Lids close the holes of walls, and the walls beyond all of these.
-  /// Necks to spheres that are left out are missing: spheres that these joined are open there.
+  /// them, and the walls beside these. Lids close the holes of walls, the walls beyond all of these, and
+  /// spheres where necks to those left out are missing.
   PartOfSurface near(double low, double high) const;
   /// The largest extent of a sphere along the axis.
   double largest_extent() const { return largest_extent_; }
