@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "bernal/core/dimension.hpp"
 #include "meshes/surface_draft.hpp"
 
 namespace bernal {
@@ -26,11 +27,9 @@ Vector<3> inner_point(const Piece& piece) {
 
 namespace {
 
-double volume_of_ball(double radius) { return 4 * std::numbers::pi / 3 * radius * radius * radius; }
-
 /// The volume of a ball in the domain: of all its images together.
 double volume_within(const SurfaceDraft& draft, const Vector<3>& center, double radius) {
-  if (!draft.solids.part) return volume_of_ball(radius);
+  if (!draft.solids.part) return ball_volume(3, radius);
   const std::optional<Piece> piece = piece_in(*draft.solids.part, center, radius);
   return piece ? volume_of(*piece) : 0;
 }

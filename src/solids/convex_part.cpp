@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "measure/convex_cell.hpp"
 #include "measure/round_walls.hpp"
@@ -270,7 +271,7 @@ std::optional<Piece> piece_in(const ConvexPart& part, const Vector<3>& center, d
 
 double volume_of(const Piece& piece) {
   const double r = piece.radius;
-  if (piece.cuts.empty()) return 4 * std::numbers::pi / 3 * r * r * r;
+  if (piece.cuts.empty()) return ball_volume(3, r);
   ConvexCell cell;
   const Vector<3> beyond = Vector<3>::Constant(2 * r);
   cell.reset(-beyond, beyond, {-1, -1, -1, -1, -1, -1});

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "bernal/core/dimension.hpp"
 #include "bernal/core/error.hpp"
 #include "core/parallel.hpp"
 #include "geometry/point_numbers.hpp"
@@ -309,7 +310,7 @@ SurfaceMeasures SphereSurfaces::measure() const {
     sum.triangles += all[i].triangles;
     sum.deflection = std::max(sum.deflection, all[i].deflection);
     sum.volume_share += all[i].volume;
-    volume += 4 * std::numbers::pi / 3 * std::pow(radius(i), 3);
+    volume += ball_volume(3, radius(i));
   }
   if (volume > 0) sum.volume_share /= volume;
   return sum;
