@@ -175,7 +175,7 @@ Command mesh_command() {
        .examples = {{"bernal mesh out --to openfoam -o case/bed.foam",
                      "polyMesh of the pores, for checkMesh"},
                     {"bernal mesh out --to openfoam -o case/bed.foam --prisms 3", "with boundary layers"},
-                    {"bernal mesh out --to openfoam -o case --patches \"inlet: z = 0, outlet: z = 40\"",
+                    {"bernal mesh out --to openfoam -o case --patches \"inlet: z = 0, outlet: z = 4 cm\"",
                      "with inlet and outlet of a CAD part"},
                     {"bernal mesh out --to gmsh -o bed.msh --regions all",
                      "pores and spheres, for Gmsh, meshio"},

@@ -9,7 +9,7 @@ std::string_view version() { return BERNAL_VERSION; }
 /// Counted since the first table of pinned packings, tests/golden/hashes.csv: up to version 0.2.0, 25 of the
 /// commits to that table gave rows that it had another hash, number, fraction or outcome. tests/golden/table
 /// writes the next line.
-constexpr int packings = 30;
+constexpr int packings = 31;
 
 int packings_number() { return packings; }
 

@@ -100,7 +100,7 @@ const std::vector<MeshKey>& mesh_keys() {
        "PART", &Of::cut},
       {"patches",
        "Flat walls that are patches of their own, by the planes that they lie in, for inlets and outlets: "
-       "\"inlet: z = 0, outlet: z = 40\", in the scene's unit",
+       "\"inlet: z = 0, outlet: z = 4 cm\"; in the scene's unit where none is given",
        "NAMES", &Of::patches},
       {"unit", "Of lengths in the files: m, mm, …; the scene's if absent, and always m for snappy", "UNIT",
        &Of::unit},

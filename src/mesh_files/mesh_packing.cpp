@@ -194,7 +194,7 @@ NamedMesh mesh_of(const Packing& packing, const MeshFileOptions& options, const 
   report.is_surface = writer.format.is_surface;
   ConformingSurface surface = conforming_surface(solids, sizes_of(options, report.is_surface), monitor);
   name_spheres(surface, of_packing);
-  if (!options.patches.empty()) name_walls(surface, options.patches);
+  if (!options.patches.empty()) name_walls(surface, options.patches, packing.scene.unit);
   take_surface(surface, report);
   // The surface states what is between its own walls.
   report.porosity += 1 - volume_of(solids.domain) / report.domain_volume;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bernal/core/error.hpp"
+#include "bernal/core/quantity.hpp"
 #include "bernal/core/text.hpp"
 #include "cad/repair/plane_cut.hpp"
 
@@ -24,11 +25,6 @@ struct NamedPlane {
 };
 
 [[noreturn]] void refuse_patches(const std::string& why) { throw Error(ErrorCode::bad_argument, why); }
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
-}
 
 std::string in_lower_case(std::string_view name) {
   std::string made(name);
@@ -59,7 +55,7 @@ void require_name(std::string_view given) {
         fmt::format("other parts of meshes are called \"{}\"; give the patch another name", given));
 }
 
-std::vector<NamedPlane> planes_in(std::string_view text) {
+std::vector<NamedPlane> planes_in(std::string_view text, Unit unit) {
   std::vector<NamedPlane> planes;
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t comma = std::min(text.find(',', from), text.size());
@@ -76,7 +72,9 @@ std::vector<NamedPlane> planes_in(std::string_view text) {
       if (other.name != name && in_lower_case(other.name) == in_lower_case(name))
         refuse_patches(
             fmt::format("the names {} and {} of ‹patches› differ in case alone", other.name, name));
-    planes.push_back({std::string(name), cad::plane_in(trimmed(one.substr(colon + 1)))});
+    const std::string plane(trimmed(one.substr(colon + 1)));
+    planes.push_back({std::string(name), cad::plane_in(without_unit(plane, unit))});
+    planes.back().plane.text = plane;
   }
   return planes;
 }
@@ -109,9 +107,9 @@ double diagonal_of(const ConformingSurface& surface) {
 
 }  // namespace
 
-void name_walls(ConformingSurface& surface, std::string_view text) {
+void name_walls(ConformingSurface& surface, std::string_view text, Unit unit) {
   const double tolerance = share_of_diagonal * diagonal_of(surface);
-  for (const NamedPlane& named : planes_in(text)) {
+  for (const NamedPlane& named : planes_in(text, unit)) {
     double nearest = std::numeric_limits<double>::infinity();  // of parallel walls that are not in the plane
     bool is_found = false;
     const std::vector<Heights> heights = heights_above(surface, named.plane);

@@ -27,8 +27,8 @@ class PartBuilder {
   void add(const FaceCorners& triangle, std::uint32_t patch);
   /// In the part; nothing where that does not have all of them.
   std::vector<std::uint32_t> numbers_of(std::vector<std::uint32_t> vertices) const;
-  /// Triangles from a closed chain of edges, in numbers of the part, to a point that stands over its middle:
-  /// by half of its diagonal, else they would nearly lie in one plane.
+  /// Triangles from a closed chain of edges, in numbers of the part, to a point that stands over its middle,
+  /// by half of its diagonal along `out`: many edges that lie nearly in one plane make poor triangles there.
   void add_cone(const std::vector<std::uint32_t>& chain, const Vector<3>& out, std::uint32_t patch);
   const PartOfSurface& part() const { return part_; }
   PartOfSurface& part() { return part_; }

@@ -32,6 +32,7 @@ NearFaces::NearFaces(const Bounds<3>& box, const Vector<3>& p) {
   // Of each axis: a face at its lower end, at its upper end, or none.
   for (int which = 1; which < 27; ++which) {
     double square = 0;
+    int faces = 0;
     bool is_beside = true;  // whether the nearest point of the plane, line or corner lies on the box
     for (int k = 0, rest = which; k < 3; ++k, rest /= 3) {
       const double at = rest % 3 == 1 ? box.lower[k] : box.upper[k];
@@ -39,19 +40,20 @@ NearFaces::NearFaces(const Bounds<3>& box, const Vector<3>& p) {
         is_beside = is_beside && p[k] >= box.lower[k] && p[k] <= box.upper[k];
       } else {
         square += (p[k] - at) * (p[k] - at);
+        ++faces;
       }
     }
-    if (is_beside && std::isfinite(square)) features_.push_back({std::sqrt(square)});
+    if (is_beside && std::isfinite(square)) features_.push_back({std::sqrt(square), faces == 1});
   }
 }
 
 NearFaces::NearFaces(const ConvexPart& part, const Vector<3>& p) {
   for (const ConvexPart::Face& face : part.faces) {
     const double above = face.keeps.normal.dot(p) - face.keeps.offset;
-    if (face.holds(p - above * face.keeps.normal, part)) features_.push_back({std::abs(above)});
+    if (face.holds(p - above * face.keeps.normal, part)) features_.push_back({std::abs(above), true});
   }
   const auto add = [&](const Vector<3>& d, const std::array<double, 2>& limits) {
-    features_.push_back({std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), limits[0], limits[1]});
+    features_.push_back({std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), false, limits[0], limits[1]});
   };
   for (const ConvexPart::Edge& edge : part.edges) {
     const Vector<3>&a = part.corners[edge.corners[0]].point, &b = part.corners[edge.corners[1]].point;
@@ -67,8 +69,8 @@ double NearFaces::clear_radius(double radius, double gap, double share) const {
   for (bool changed = true; changed;) {
     changed = false;
     for (const Feature& feature : features_) {
-      const double nearest = std::max(gap, share * feature.nearest),
-                   lowest = std::max(gap, share * feature.lowest);
+      const double of = feature.is_face ? share : 1;
+      const double nearest = std::max(gap, of * feature.nearest), lowest = std::max(gap, of * feature.lowest);
       if (!(feature.distance - radius < nearest * radius && radius - feature.distance < lowest * radius))
         continue;
       // Where rounding says that it is still too near it goes on by roundoffs.

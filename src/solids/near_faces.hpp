@@ -24,8 +24,8 @@ class NearFaces {
   /// The largest radius, up to the given one, with which a sphere around the point reaches beyond each of
   /// them by at least `least_cap`, or is at least `least_distance` away from it; both are at least `gap`, in
   /// radii. At edges sharper than a right angle both are more, since circles in the two faces come near each
-  /// other before such an edge and cross at a small angle beyond it. `share`: of both that is enough. Cost:
-  /// O(1).
+  /// other before such an edge and cross at a small angle beyond it. `share`: of both that is enough at
+  /// faces. Cost: O(1).
   double clear_radius(double radius, double gap, double share = 1) const;
   /// The same for a sphere and, from the outside in, for the spheres in it in which layers begin; no layer
   /// loses a share of its thickness. `layers`: radii that ascend. False if nothing changed.
@@ -34,6 +34,7 @@ class NearFaces {
  private:
   struct Feature {
     double distance;
+    bool is_face;
     double lowest = least_cap, nearest = least_distance;
   };
   std::vector<Feature> features_;
@@ -41,8 +42,8 @@ class NearFaces {
 
 /// Makes those spheres and layers smaller that the ends of the periods nearly touch, and states it in
 /// `contacts` and `cleared`. Where contacts are not gaps, spheres keep theirs: a third of the clearance is
-/// enough, and those that stand on walls, numbered in ascending order, stay as they are. Precondition:
-/// centres are in the period; no pieces are made yet. Cost: O(N).
+/// enough at faces, and those that stand on walls, numbered in ascending order, stay as they are.
+/// Precondition: centres are in the period; no pieces are made yet. Cost: O(N).
 void clear_of_ends(Solids&, double gap, const std::vector<WallFoot>& feet);
 
 }  // namespace bernal

@@ -46,7 +46,7 @@ TEST(MeshWalls, InletAndOutletOfACadPartArePatchesWithoutPrisms) {
   if (!has_tetgen()) GTEST_SKIP() << "tetgen is not installed";
   const PackedHopper result;
   const Ended ended = bernal({"mesh", result.out(), "--to", "openfoam", "-o", result.folder / "case/bed.foam",
-                              "--patches", "outlet: z = 0, inlet: z=1.4", "--prisms", "1", "--json"});
+                              "--patches", "outlet: z = 0, inlet: z=140 cm", "--prisms", "1", "--json"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_GE(nlohmann::json::parse(ended.out)["least_sicn"], 0.1);
   const std::string boundary = text_of(result.folder / "case/constant/polyMesh/boundary");

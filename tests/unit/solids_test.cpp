@@ -366,6 +366,23 @@ TEST(Solids, EndsStayClearOfSpheres) {
   }
 }
 
+TEST(Solids, EndsStayClearOfBridgedSpheresToo) {
+  Spheres<dynamic> spheres(3);  // rows along a period, shifted so that an end is near one of them everywhere
+  for (int k = 0; k < 1728; ++k)
+    spheres.push_back(Vector<3>(k % 12 + std::fmod(0.618 * (k / 12), 1.0), k / 12 % 12, k / 144), 0.495);
+  const Domain box = Box{Vector<3>(0, -1, -1), Vector<3>(12, 13, 13), {true, false, false}};
+  SolidsOptions options{.contact = ContactTreatment::bridge, .gap = 0.05};
+  const std::size_t bridges = solids_of(spheres, box, options).bridges.size();
+  options.clear_of_ends = true;
+  const Solids solids = solids_of(spheres, box, options);
+  EXPECT_TRUE(solids.cleared > 0 && solids.bridges.size() == bridges);
+  const double end = boundary_of<3>(solids.domain).origin[0];
+  const auto nearly_touches = [](double h) { return h > 0.98 + 1e-9 && h < 1.01 - 1e-9; };
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for (const double at : {end, end + 12})
+      EXPECT_FALSE(nearly_touches(std::abs(solids.spheres.x[0][i] - at) / solids.spheres.r[i]));
+}
+
 TEST(Solids, NarrowPlacesAreAtContacts) {
   Spheres<3> spheres;
   spheres.push_back({1, 1, 1}, 0.5);
