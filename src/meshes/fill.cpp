@@ -42,7 +42,7 @@ VolumeMesh fill(const ConformingSurface& surface, const TetrahedraOptions& optio
       sides_of_triangles(mesh);
       report.sections = cuts.count();
       break;
-    } catch (const Error& error) {  // lids of a section may cross walls that are not convex
+    } catch (const Error& error) {  // where a section ends its cone may cross walls that are not convex
       if (error.code() != ErrorCode::bad_mesh) throw;
       report.sections_failed = true;
     }
